@@ -2,7 +2,7 @@
 
     python benchmarks/open_ledgers.py [--cages 1000] [--first 0]
 
-As many in the plane as in space (tests/physics/random_cages.py), 16 runs each from 0.3 m/s. A cage whose
+As many in the plane as in space (tests/physics/cages.py), 16 runs each from 0.3 m/s. A cage whose
 ledger leaves more than 1e-2 of the work done open is printed with its outcomes. Some minutes on two cores.
 """
 
@@ -21,7 +21,7 @@ from separatrix.cage import run_ensemble
 from separatrix.study.study import StabilitySettings
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "physics"))
-from random_cages import random_cage
+from cages import random_cage
 
 SETTINGS = StabilitySettings(kicks=(0.3,), runs=16, duration=1e-3)
 OPEN = 1e-2

@@ -6,7 +6,7 @@ import pytest
 from axe_playwright_python.sync_playwright import Axe
 from playwright.sync_api import expect
 
-from conftest import PATIENCE, opened, run
+from conftest import PATIENCE, run
 
 SIZES = {
     "light": {},
@@ -74,11 +74,3 @@ def test_jobs_hide_nothing(view, server, views, size):
         expect(page.locator("#jobs .job").first).to_be_attached()
         scroll, jobs = page.locator("#scroll").bounding_box(), page.locator("#jobs").bounding_box()
         assert scroll["y"] + scroll["height"] <= jobs["y"] + 1, place
-
-
-def test_a_study_without_a_cage_says_what_it_needs(view, server, folder):
-    """Beside the verbs."""
-    (folder / "cageless.toml").write_text('extends = "ball-218"\n', encoding="utf-8")
-    page = view()
-    page.goto(f"{server.address}/study/cageless.toml")
-    expect(opened(page, "simulate")).to_contain_text("Needs the section")

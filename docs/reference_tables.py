@@ -23,7 +23,7 @@ from separatrix.study.ball_bearing import Material
 from separatrix.study.template import keys_in, remark_of, sections, study_keys
 from separatrix.verbs import cage_answers, chain_answers
 from separatrix.verbs.compare import Row
-from separatrix.verbs.parts.quantities import QUANTITIES
+from separatrix.verbs.parts.quantity_text import QUANTITIES
 from separatrix.verdict.swept_cases import Duty, Sweep, WorstCase
 
 KEYS = """# Keys of a study

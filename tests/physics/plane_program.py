@@ -149,7 +149,7 @@ class Plane:
 
 
 def integrate(
-    cage: MovingCage, *, kick: float, direction: float, ball_lead: Array, times: Array, rtol: float = 1e-9
+    cage: MovingCage, *, kick: float, direction: float, ball_lead: Array, times: Array, rtol: float = 1e-7
 ) -> Course:
     """Follow the cage from its initial disturbance; where it is at these times, the first of which is 0."""
     R, Z, plane = cage.pitch_radius, cage.ball_count, Plane(cage)

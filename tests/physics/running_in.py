@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from scipy.signal import lfilter
+from synthetic_friction import remembered
 
 from separatrix.friction.logs.log import RawLog
 
@@ -52,8 +52,7 @@ SHAPES: dict[str, Callable[[np.ndarray], np.ndarray]] = {
 def noise(rng: np.random.Generator, *, correlated: bool) -> np.ndarray:
     """Gaussian noise of standard deviation one, white or forgetting itself exponentially."""
     keep = np.exp(-1.0 / (CORRELATION * ROWS)) if correlated else 0.0
-    drive = rng.standard_normal(2 * ROWS) * np.sqrt(1.0 - keep**2)
-    return lfilter([1.0], [1.0, -keep], drive)[ROWS:]
+    return remembered(rng.standard_normal(2 * ROWS), np.full(2 * ROWS - 1, keep))[ROWS:]
 
 
 def made(name: str, rng: np.random.Generator, *, correlated: bool) -> tuple[RawLog, float]:

@@ -80,7 +80,7 @@ class SmallSteps:
         start = np.concatenate(
             [[0.0] * 6, [1.0], speed, spin + W * AXIS, np.outer(leads, [1.0, 0.0]).ravel()]
         )
-        how = {"method": "DOP853", "t_eval": times, "rtol": 1e-9, "atol": 1e-13, "max_step": step}
+        how = {"method": "DOP853", "t_eval": times, "rtol": 1e-7, "atol": 1e-11, "max_step": step}
         found = solve_ivp(self.rates, (0.0, times[-1]), start, **how)
         back = Rotation.from_rotvec(-W * times[:, None] * AXIS)
         tilt = (back * Rotation.from_quat(found.y[3:7].T)).as_rotvec()

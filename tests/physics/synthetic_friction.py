@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.signal import lfilter
 
 from separatrix.friction.logs.column_map import Conditions
 from separatrix.friction.logs.log import RawLog
@@ -85,14 +84,15 @@ def noise(recipe: Recipe, time: np.ndarray, rng: np.random.Generator) -> np.ndar
     if recipe.correlation == 0.0:
         return recipe.noise * white + other
     keep = np.exp(-np.diff(time) / (recipe.correlation * time[-1]))
-    if np.ptp(keep) < 1e-9:
-        drive = white * np.sqrt(1.0 - keep[0] ** 2)
-        drive[0] = white[0]
-        return recipe.noise * lfilter([1.0], [1.0, -keep[0]], drive) + other
+    return recipe.noise * remembered(white, keep) + other
+
+
+def remembered(white: np.ndarray, keep: np.ndarray) -> np.ndarray:
+    """Return noise of the same deviation that keeps these shares of itself from row to row."""
     out = white.copy()
     for i, k in enumerate(keep.tolist(), start=1):
         out[i] = k * out[i - 1] + (1.0 - k * k) ** 0.5 * white[i]
-    return recipe.noise * out + other
+    return out
 
 
 def _times(recipe: Recipe, rng: np.random.Generator) -> np.ndarray:

@@ -24,18 +24,6 @@ BACKWARD = {"inner_speed": 0.0, "outer_speed": 1500.0}
 """Rotation of the outer ring, for whose friction whirl is backward."""
 
 
-def growth_rate(cage: MovingCage, duration: float) -> float:
-    """Growth rate of the amplitude from the middle to the end of a run, by the kinetic energy [1/s]."""
-    found = followed(cage, duration, samples=20_000)
-    half, end = found.time[-1] / 2, found.time[-1]
-    width = 5 / linear_whirl_frequency(cage)  # whole turns, so that the mean has no beat
-    means = []
-    for until in (half, end):
-        window = (found.time > until - width) & (found.time <= until)
-        means.append(np.trapezoid(found.kinetic_energy[window], found.time[window]))
-    return 0.5 * math.log(means[1] / means[0]) / (end - half)
-
-
 @pytest.mark.parametrize(("damping", "friction"), [(2000.0, 0.08257), (4000.0, 0.04129), (8000.0, 0.02064)])
 def test_critical_friction_of_the_linear_limit(damping, friction):
     """sqrt(2 k M/Z)/C_mu = 2 zeta sqrt(2/Z), to the four digits given; whirl at sqrt(Z k/2M)/(2 pi)."""
@@ -45,24 +33,14 @@ def test_critical_friction_of_the_linear_limit(damping, friction):
     assert linear_whirl_frequency(gripped(damping)) == pytest.approx(2891.2, abs=0.05)  # digits given
 
 
-@pytest.mark.parametrize("speed", [0.0, 700.0, 3000.0])
-@pytest.mark.parametrize("law", [None, replace(LAW, slope=2000.0)], ids=["damper", "one state"])
-def test_a_whirl_grows_at_the_rate_of_its_exact_root(speed, law):
-    """Within 0.5 % of what the friction adds: the step leaves 0.05 % with dampers, 0.24 % with masses."""
-    cage = gripped(2000.0, 0.095, cage_speed=speed, traction=law)
-    whirl = max(linear_roots(cage)[np.abs(linear_roots(cage).imag) > 5000], key=lambda root: root.real)
-    added = 0.5 * 0.095 * whirl_rate(cage)
-    found = growth_rate(cage, 0.012)
-    assert found == pytest.approx(whirl.real, abs=0.005 * added)
-
-
+@pytest.mark.parametrize("speed", [0.0, 669.0, 3000.0])
 @pytest.mark.parametrize("law", [None, LAW], ids=["damper", "one state"])
-def test_small_motions_are_the_exponentials_of_the_roots(law):
+def test_small_motions_are_the_exponentials_of_the_roots(law, speed):
     """All three or four of them, from the disturbance on: 2e-4 of the motion at half the usual step.
 
     8e-5 is measured, and 1/16 of it at half of that.
     """
-    grip = {"cage_speed": 669.0, "pocket_clearance": 0.0, "race_damping": 900.0, "ball_cage_friction": 0.1}
+    grip = {"cage_speed": speed, "pocket_clearance": 0.0, "race_damping": 900.0, "ball_cage_friction": 0.1}
     cage = replace(TURNING, **grip, traction=law)
     found = followed(cage, 2e-3, direction=0.3, refine=2)
     # z and three derivatives at the start: the balls press with q only, and q' = v; times in 1/w0

@@ -8,7 +8,8 @@ import pytest
 
 from separatrix.chain.creep import Creep
 from separatrix.chain.exact.grid import cell_counts
-from separatrix.chain.exact.influence import Body, Layer, Solid, solid
+from separatrix.chain.exact.influence import Body, Layer, Solid, pair_images, solid
+from separatrix.chain.exact.pressure import press
 from separatrix.chain.exact.rolling import (
     ContactProblem,
     creep_of_force,
@@ -125,6 +126,7 @@ REFUSED = [
     (lambda: slipping(curvature=1e20), SLIP),
     (lambda: slope(spin=1e9), SLIP),
     (lambda: slope(columns=(20, 20)), "traction_slope: columns must be strictly increasing; got (20, 20)."),
+    (lambda: press(SPOILT[0], (0.1, 0.1), pair_images(STEEL, STEEL), 1.0), "press: gap must be finite"),
     (lambda: solve(made(), np.zeros((2, 3, 3))), "solve: slip must have the shape (2, 8, 8); got (2, 3, 3)."),
     (lambda: field(start=FIELD[:1]), "solve: start must have the shape (2, 8, 8); got (1, 8, 8)."),
     (lambda: field(start=SPOILT), "solve: start must be finite [Pa]; got nan."),

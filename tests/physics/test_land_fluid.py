@@ -1,4 +1,7 @@
-"""Fluid in the gap of a land: its added mass by another method and in both limits, its decay, its inputs."""
+"""Fluid in the gap of a land: its added mass by another method and in both limits, its decay, its inputs.
+
+And what else moves a critical friction: what of it the inputs of a study allow to put in or leave out.
+"""
 
 import math
 from dataclasses import replace
@@ -7,11 +10,13 @@ import numpy as np
 import pytest
 from scipy.linalg import solve_banded
 
-from separatrix import read_study
+from separatrix import read_study, solve
+from separatrix.cage.moving_cage import moving_cage
 from separatrix.chain.land_fluid import annulus_mass, decay_rate, land_fluid
+from separatrix.verdict.effects import MOVED, WIDE, effects_on
 
 STUDY = read_study("cryogenic-turbopump")
-WIDE = replace(STUDY.cage, land_width=0.004)
+WIDE_LAND = replace(STUDY.cage, land_width=0.004)
 
 
 @pytest.mark.parametrize("length", [1e-4, 4e-3, 0.02, 0.3])
@@ -45,7 +50,7 @@ def test_walls_hold_a_flow_by_hirs_or_laminar():
     speed = 2.73e4 * mu / (rho * c)
     assert decay_rate(mu, rho, speed, c) == pytest.approx(0.066 * 2.73e4**-0.25 * speed / c, rel=1e-12)
     assert decay_rate(mu, rho, 0.0, c) == pytest.approx(12.0 * mu / (rho * c**2), rel=1e-12)
-    found = land_fluid(STUDY, WIDE, 670.0)
+    found = land_fluid(STUDY, WIDE_LAND, 670.0)
     assert 90.0 < found.damping / found.added_mass < 180.0
 
 
@@ -54,7 +59,51 @@ def test_a_fluid_needs_a_land_of_some_width_and_a_fluid_near_its_temperature():
     assert land_fluid(STUDY, STUDY.cage, 670.0) is None
     for change in ({"temperature": 110.0}, {"temperature": None}):
         warm = replace(STUDY, operation=replace(STUDY.operation, **change))
-        assert land_fluid(warm, WIDE, 670.0) is None
-    assert land_fluid(read_study("momentum-wheel"), WIDE, 670.0) is None
-    both = replace(WIDE, land_count=2, land_spacing=0.01)
-    assert land_fluid(STUDY, both, 670.0).added_mass == 2.0 * land_fluid(STUDY, WIDE, 670.0).added_mass
+        assert land_fluid(warm, WIDE_LAND, 670.0) is None
+    assert land_fluid(read_study("momentum-wheel"), WIDE_LAND, 670.0) is None
+    both = replace(WIDE_LAND, land_count=2, land_spacing=0.01)
+    assert land_fluid(STUDY, both, 670.0).added_mass == 2.0 * land_fluid(STUDY, WIDE_LAND, 670.0).added_mass
+
+
+def found(radial_load=0.0, **cage):
+    """Cage and effects of the shipped study with other inputs."""
+    operation = replace(STUDY.operation, radial_load=radial_load)
+    solution = solve(replace(STUDY, operation=operation, cage=replace(STUDY.cage, land_width=0.0, **cage)))
+    moving = moving_cage(solution, 0.1)
+    return moving, effects_on(solution, moving)
+
+
+def test_what_a_study_does_not_state_is_no_effect():
+    """The pockets of the shipped cage stop it, its balls are alike, and its lands have no width."""
+    assert found()[1] == {}
+
+
+def test_the_land_of_a_cage_that_it_stops_is_widened():
+    """To 1.6 times the clearance of the pocket."""
+    cage, effects = found(land_clearance=1e-4)
+    assert effects["wide_land"].values == {"land_clearance": WIDE * cage.pocket_clearance}
+
+
+@pytest.mark.parametrize(("width", "count"), [(14e-3, 1), (2e-3, 0)])
+def test_the_fluid_of_a_land_is_put_in_where_it_counts(width, count):
+    """A long annulus of liquid nitrogen weighs as the cage does; a short one less than a twentieth of it."""
+    solution = solve(replace(STUDY, cage=replace(STUDY.cage, land_width=width)))
+    cage = moving_cage(solution, 0.1)
+    effects = effects_on(solution, cage)
+    assert len(effects) == count
+    radius = cage.land_radius or cage.pitch_radius
+    mass = cage.land_count * annulus_mass(808.0, radius, width, 0.5 * cage.land_clearance)
+    assert (mass > MOVED * cage.mass) == bool(count)
+    if count:
+        fluid = effects["fluid"].values
+        # 808 kg/m3 for the density of the library at the nearest temperature that it has
+        assert fluid["added_mass"] == pytest.approx(mass, rel=1e-2)
+        assert fluid["fluid_speed"] == 0.5 * cage.cage_speed  # halfway to an outer ring at rest
+
+
+def test_what_a_study_states_is_left_out():
+    """Fluid that moves with the cage, unequal balls, and their lead and lag under a radial load."""
+    effects = found(added_mass=0.02, ball_diameter_scatter=1e-7, radial_load=500.0)[1]
+    assert [*effects] == ["fluid", "equal_balls", "even_orbits"]
+    assert effects["fluid"].values["added_mass"] == 0.0
+    assert effects["even_orbits"].values["orbital_cosines"] == ()

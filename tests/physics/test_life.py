@@ -5,15 +5,15 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from mobile_balls import study_of
 from scipy.special import ndtr, ndtri
-from test_equilibrium_friction import RPM, WHEEL
 
 import separatrix
 from separatrix.chain import slip_work
 from separatrix.chain.contacts import bearing_state
 from separatrix.chain.slip_work import TrackWork, track_work
 from separatrix.chain.solution import solve
-from separatrix.study.study import Film, KinematicModel, Operation, Race, WearRates
+from separatrix.study.study import Film, KinematicModel, Race, WearRates
 from separatrix.verdict.crossing import PLACES, Count, steepness
 from separatrix.verdict.life_table import Node, _accelerated, _bearing_wear, _drawn, _tests, life, wear_rates
 from separatrix.verdict.wear_life import (
@@ -27,6 +27,7 @@ from separatrix.verdict.wear_life import (
     driven_by,
     film_after,
     lives,
+    steady_coverage,
     worn_depth,
 )
 
@@ -68,25 +69,21 @@ def test_two_steps_of_a_film_are_one(deposit):
 @pytest.mark.parametrize(
     ("name", "inner", "outer", "passes"),
     [
-        ("cryogenic-turbopump", 6213.7, 3064.1, (1865.85, 1384.15)),
+        ("cryo", 6213.7, 3064.1, (1865.85, 1384.15)),
         ("le7", 13426.0, 6138.0, None),
-        ("wheel", 167.26, 54.93, None),
+        ("wheel 6000", 167.26, 54.93, None),
     ],
 )
 def test_work_of_a_pass_is_that_of_an_independent_program(name, inner, outer, passes, monkeypatch):
     """Its largest value across the track, rigid bodies; and the heat is friction times all of it."""
     monkeypatch.setattr(slip_work, "STRIPS", 512)
-    study = separatrix.read_study("le7" if name == "wheel" else name)
-    bearing = WHEEL if name == "wheel" else study.bearing
-    load = 40.0 if name == "wheel" else study.operation.axial_load
-    speed = 6000.0 * RPM if name == "wheel" else study.operation.inner_speed
-    operation, friction = Operation(inner_speed=speed, axial_load=load), 0.05 if name == "wheel" else 0.1
+    given = study_of(name)
+    bearing, operation, friction = given.bearing, given.operation, given.film.race_friction
     state = bearing_state(bearing, operation, KinematicModel.FREE, friction)
     for race, value, at in ((Race.INNER, inner, state.inner), (Race.OUTER, outer, state.outer)):
         found = track_work(bearing, operation, state, race)
-        assert found.work.max() == pytest.approx(
-            value, rel=1e-3
-        )  # five digits, of an equilibrium that differs by 3e-4
+        # five digits, of an equilibrium that differs by 3e-4
+        assert found.work.max() == pytest.approx(value, rel=1e-3)
         width = 2.0 * at.ellipse.semi_major / found.work.size
         heat = getattr(state.equilibrium, f"heat_{race.value}")[at.ball]
         # slip that is no longer rounded off near zero: 2 % of the little heat of the wheel's outer race
@@ -190,6 +187,16 @@ def test_debris_grows_a_film_that_does_not_wear_until_the_reservoir_is_empty():
     assert ended.films[0][-1, 0] < 0.5 * UM + 1e-3 * grown
 
 
+def test_deposit_balances_wear_at_its_fixed_point():
+    """D/W of a calm and of a whirling cage; the film of a calm cage ends at that coverage, or grows."""
+    area = 2e-4 + 0.5 * 10 * math.pi * 1e-2**2
+    given = {"film_wear": 1e-15, "cage_wear": 1e-15 * 100.0 * 0.3 * area / 2.0, "transferred": 1.0}
+    calm, whirling = steady_coverage(PHASE, worn(**given))
+    assert (calm[0], whirling[0]) == pytest.approx((0.3, 1.0), rel=1e-9)
+    found = course(PHASE, worn(**given, bare_friction=0.05), 1e9)
+    assert -math.expm1(-found.films[0][-1, 0] / (0.1 * UM)) == pytest.approx(0.3, rel=1e-3)
+
+
 def test_race_friction_is_the_mean_by_load():
     """The inner track bare, of three times the load of the outer one, which does not wear."""
     idle = replace(TRACK, work=np.zeros(2))
@@ -277,9 +284,9 @@ def test_a_reservoir_is_that_of_esa():
 )
 def test_endurance_of_a_published_film(coefficient, low, high):
     """0.6 um of MoS2 outlasted 1.05e8 cycles (NASA): at 5e-9 mm3/(N m) part is left, at 4e-6 nothing."""
-    operation = Operation(inner_speed=6000.0 * RPM, axial_load=40.0)
-    state = bearing_state(WHEEL, operation, KinematicModel.FREE, 0.05)
-    track = track_work(WHEEL, operation, state, Race.INNER)
+    wheel = study_of("wheel 6000")
+    state = bearing_state(wheel.bearing, wheel.operation, KinematicModel.FREE, 0.05)
+    track = track_work(wheel.bearing, wheel.operation, state, Race.INNER)
     wear = np.array([coefficient * 1e-9 * track.work.max() * track.passes])
     left = film_after(*of(0.6 * UM), wear, *of(0.0, 0.1 * UM), 1.05e8 / 100.0)
     assert low <= -math.expm1(-left[0] / (0.1 * UM)) <= high

@@ -1,6 +1,7 @@
 """Strips and exact contact in the chain of a bearing."""
 
 from dataclasses import replace
+from functools import cache
 
 import pytest
 from cages import BEARING
@@ -55,10 +56,11 @@ def track(film=COATED, race=Race.OUTER):
     return race_tracks(BEARING, film, state)[race is Race.OUTER]
 
 
-def outside(film=COATED, bearing=BEARING, **settings):
+@cache
+def outside(film=COATED, bearing=BEARING):
     """Sentences on where the strips leave their range."""
     state = solve(replace(study(film), bearing=bearing)).bearing
-    return " ".join(beyond_strips(race_tracks(bearing, film, state), TractionSettings(**settings)))
+    return " ".join(beyond_strips(race_tracks(bearing, film, state), TractionSettings()))
 
 
 def test_the_chain_takes_the_slopes_of_its_model():

@@ -8,27 +8,27 @@ import pytest
 
 import separatrix
 from separatrix.cage import moving_cage, simulate
-from separatrix.cage.closed_forms import linear_whirl_frequency
 from separatrix.cage.outcome import RunOutcome
 from separatrix.chain.solution import solve
-from separatrix.verdict.rig_signs import SLOWER, housing_line, rig_signs, slower
+from separatrix.verdict.rig_signs import SLOWER, loudest, rig_signs, slower
 
 WHEEL = solve(separatrix.read_study("momentum-wheel"))
 
 
-def signs(friction, **changes):
+def signs(friction, until=None, ball=None, chain=WHEEL, **changes):
     """Signs of a run of the wheel with this pocket friction, and the run."""
     both = []
-    for chain, kick in ((WHEEL, 0.1), (slower(WHEEL), 0.1 * SLOWER)):
-        cage = replace(moving_cage(chain, friction), **changes)
-        both.append((chain, cage, simulate(cage, kick=kick, samples=20_000)))
+    for each, kick in ((chain, 0.1), (slower(chain), 0.1 * SLOWER)):
+        cage = replace(moving_cage(each, friction, ball), **changes)
+        both.append((each, cage, simulate(cage, kick=kick, samples=20_000, until=until)))
     return rig_signs(*both), both[0]
 
 
 @pytest.fixture(scope="module")
 def whirling():
-    """Return signs and run of a wheel whose cage whirls."""
-    return signs(0.6)
+    """Return signs and run of a dry wheel whose cage whirls."""
+    study = separatrix.read_study("dry-reaction-wheel")
+    return signs(0.3, until=0.3, chain=solve(study, study.ranking.candidates[0]))
 
 
 def test_a_cage_without_friction_leaves_the_torque_to_the_races():
@@ -41,20 +41,22 @@ def test_a_cage_without_friction_leaves_the_torque_to_the_races():
 
 
 def test_a_whirl_gives_its_power_to_the_torque(whirling):
-    """The share of the pockets and the torque of the cage are those of one balance; nearly all is theirs."""
-    found, (chain, cage, history) = whirling
+    """The share of the pockets and the torque of the cage are those of one balance; it grows with speed."""
+    found, (chain, _, history) = whirling
     assert history.outcome is RunOutcome.WHIRLS
     speed = abs(chain.study.operation.inner_speed)
-    land = cage.land_friction * history.rubbing_force * history.rubbing_speed
-    assert found.cage_torque * speed == pytest.approx(found.pocket_heat + land, rel=1e-12)
-    assert found.pocket_share > 0.9
-    assert 1.0 < found.torque_exponent < 2.5  # published: "may go as speed squared"
-    assert found.race_exponent < 0.7
+    pockets = 0.3 * history.pocket_rubbing.sum() / history.time[-1]
+    assert found.pocket_heat == pytest.approx(pockets, rel=1e-12)
+    assert found.cage_torque * speed >= found.pocket_heat
+    assert found.pocket_share * found.bearing_torque * speed == pytest.approx(pockets, rel=1e-12)
+    # the exponent of the cage's part by itself; published: "may go as speed squared"
+    assert found.race_exponent < 0.1
+    assert found.torque_exponent > found.race_exponent + 0.5
 
 
 @pytest.mark.parametrize("whirl", [-1500.0, 900.0])
-def test_line_of_a_whirl_in_the_housing(whirling, whirl):
-    """A circle of known frequency against the balls, 5 ms: its line is that and their turning."""
+def test_loudest_third_octave_of_a_circle(whirling, whirl):
+    """A circle of known frequency against the balls, 5 ms: heard at that and their turning."""
     _, (_, cage, history) = whirling
     time = np.linspace(0.0, 5e-3, 2000)
     turn = 2j * math.pi * whirl
@@ -68,10 +70,13 @@ def test_line_of_a_whirl_in_the_housing(whirling, whirl):
         followed=time[-1],
     )
     seen = abs(whirl + cage.cage_speed / (2.0 * math.pi))
-    assert housing_line(cage, circle) == pytest.approx(seen, abs=101.0)  # half a line of 5 ms
+    line, share = loudest(cage, circle)
+    assert abs(math.log2(line / seen)) < 1.0 / 6.0 + 0.15  # half a third octave, and half a line of 5 ms
+    assert share > 0.5
 
 
-def test_a_whirl_has_its_line(whirling):
-    """Within the frequencies that the pockets' springs and clearances allow."""
-    found, (_, cage, _) = whirling
-    assert cage.cage_speed / (2.0 * math.pi) < found.housing_frequency < linear_whirl_frequency(cage)
+def test_a_whirl_is_heard(whirling):
+    """In the band of a dry wheel that was heard, 1400 to 2400 Hz, as a line (Dube and others 2020)."""
+    found, _ = whirling
+    assert 1400.0 < found.housing_frequency < 2400.0  # a consistency check: the clearance was chosen
+    assert found.housing_share > 0.5

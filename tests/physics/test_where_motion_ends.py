@@ -5,7 +5,6 @@ from functools import lru_cache
 
 import numpy as np
 import pytest
-from cages import linear_roots
 
 from separatrix.cage import Cause, Ensemble, MovingCage, RunOutcome, moving_cage, run_ensemble
 from separatrix.cage.closed_forms import drive_energy
@@ -13,7 +12,7 @@ from separatrix.cage.outcome import LIMITS, end_of_motion
 from separatrix.cage.rows import LOOK_COLUMNS, of
 from separatrix.chain.solution import solve
 from separatrix.study.reading import read_study
-from separatrix.study.study import Guidance, StabilitySettings
+from separatrix.study.study import StabilitySettings
 from separatrix.verdict.crossing import cage_at
 from separatrix.verdict.judgement import Judgement, Verdict, judge
 from separatrix.verdict.reasons import CageMotion, largest_room
@@ -109,7 +108,7 @@ def test_friction_on_the_land_may_only_drag():
 def test_a_whirl_weaker_than_the_loads_rolls_whatever_the_duration():
     """Unevenly driven balls hold the cage; dead pockets whirl it, at a seventh of their energy.
 
-    Pockets feed it, and no verdict calls it unstable: it rolls, from half to four times the usual duration.
+    Pockets feed it, and no verdict calls it unstable: it rolls, from half to twice the usual duration.
     """
     cage = cage_at(shipped("lox-turbopump", 500.0), 0.0, 0.45)
     settings = StabilitySettings(duration=0.15)
@@ -119,7 +118,7 @@ def test_a_whirl_weaker_than_the_loads_rolls_whatever_the_duration():
     assert np.all(found.end_energy[rolls] < 0.5 * drive_energy(cage))
     assert np.all(found.pocket_power[rolls] > 0.0)
     assert judge(cage, found).verdict is not Verdict.UNSTABLE
-    longer = run_ensemble(cage, replace(settings, duration=1.2), kicks=(0.9,), runs=RUNS)
+    longer = run_ensemble(cage, replace(settings, duration=0.6), kicks=(0.9,), runs=RUNS)
     # so near its threshold a whirl may end by chance
     assert np.count_nonzero(longer.outcome != found.outcome) <= 1
 
@@ -144,14 +143,3 @@ def test_a_cage_that_leaves_its_room_is_not_stable():
     assert np.isfinite(found.end_energy).all()
     assert found.largest_offset.min() > max(1e-3, largest_room(cage))
     assert judge(cage, found).verdict is not Verdict.STABLE
-
-
-def test_a_cage_without_play_or_land_is_driven_out_by_its_frame():
-    """It drifts at the slow root of the linear equations; the friction of a drift is not a whirl."""
-    free = {"guidance": Guidance.BALL, "land_clearance": None, "pocket_clearance": 0.0}
-    cage = replace(shipped("cryogenic-turbopump", friction=0.02), **free)
-    found = judge(cage, run_ensemble(cage, StabilitySettings(duration=0.3), kicks=(0.1,), runs=8))
-    assert (found.by_kick[0].drifts, found.verdict) == (8, Verdict.UNDECIDED)
-    # the motion is linear, and the two fast roots have decayed by exp(-600): single precision of offsets
-    assert found.drift_rate == pytest.approx(linear_roots(cage)[0].real, rel=1e-2)
-    assert "without pocket clearance nothing holds its centre" in found.reason

@@ -1,8 +1,4 @@
-"""Random studies that an engineer could have written, each made by its seed: bearings of three classes.
-
-`sane_text` is a whole study with cage and two candidates, for `rank`; `bearing_text` is bearing, operation
-and film alone, under every kind of load and at any speed, for the equilibrium.
-"""
+"""Random studies that an engineer could have written, each made by its seed: bearings of three classes."""
 
 from __future__ import annotations
 
@@ -14,13 +10,6 @@ import numpy as np
 
 from separatrix.study.reading import read_study
 from separatrix.study.study import Study
-
-LOADS = ("axial", "radial", "combined", "moment")
-MOST_SPEED = 60_000.0
-"""Of `bearing_text` [rpm]."""
-
-MOST_DN = 2.5e6
-"""Bore times speed of `bearing_text` [mm rpm]."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -61,17 +50,8 @@ CLASSES = {
 
 def sane_study(seed: int, folder: Path) -> Study:
     """The study of `sane_text`, read from a file that is written into a folder."""
-    return _read(sane_text(seed), f"sane-{seed}", folder)
-
-
-def bearing_study(seed: int, folder: Path) -> Study:
-    """The study of `bearing_text`, read from a file that is written into a folder."""
-    return _read(bearing_text(seed), f"bearing-{seed}", folder)
-
-
-def _read(text: str, name: str, folder: Path) -> Study:
-    path = folder / f"{name}.toml"
-    path.write_text(text, encoding="utf-8")
+    path = folder / f"sane-{seed}.toml"
+    path.write_text(sane_text(seed), encoding="utf-8")
     return read_study(path)
 
 
@@ -83,106 +63,49 @@ def sane_text(seed: int, *, duration: str = "", runs: int = 0) -> str:
     """
     rng = np.random.default_rng((17, seed))
     name = str(rng.choice(sorted(CLASSES)))
-    of_class, geometry = CLASSES[name], _geometry(CLASSES[name], rng)
-    axial = _axial_load(of_class, geometry, rng)
+    one, ball = CLASSES[name], rng.uniform(*CLASSES[name].ball_diameter)
+    count = int(rng.integers(8, 18))
+    pitch = count * ball / (math.pi * rng.uniform(0.6, 0.8))  # balls fill 60 to 80 % of the pitch circle
+    angle, bore = rng.uniform(*one.contact_angle), pitch - ball * rng.uniform(1.4, 1.8)
+    axial = count * rng.uniform(*one.stribeck) * ball**2 * math.sin(math.radians(angle))
     radial = axial * rng.uniform(0.05, 0.4) if rng.random() < 0.5 else 0.0
-    speed = math.copysign(rng.uniform(*of_class.dn) / geometry["bore"], rng.random() - 0.15)
+    speed = math.copysign(rng.uniform(*one.dn) / bore, rng.random() - 0.15)
+    balls, rings = one.materials[rng.integers(len(one.materials))]
+    inner, outer = rng.uniform(*one.conformity), rng.uniform(*one.conformity)
+    friction, thickness = rng.uniform(*one.race_friction), rng.uniform(*one.thickness)
+    is_bare = rng.random() < 0.2
     settings = [f'duration = "{duration}"'] * bool(duration) + [f"runs = {runs}"] * bool(runs)
     return "\n".join(
         [
             f'title = "{name} bearing, seed {seed}"',
-            *_bearing(of_class, geometry, rng),
-            *_operation(speed, axial, radial),
-            of_class.environment,
-            *_film(of_class, rng),
-            *_cage(geometry, rng),
-            *_candidates(of_class, rng),
+            "[bearing]",
+            f'ball_diameter = "{ball:.4f} mm"',
+            f'pitch_diameter = "{pitch:.3f} mm"',
+            f"ball_count = {count}",
+            f'contact_angle = "{angle:.2f} deg"',
+            f"inner_conformity = {inner:.4f}",
+            f"outer_conformity = {outer:.4f}",
+            f'bore = "{bore:.3f} mm"',
+            f'ball_material = "{balls}"',
+            f'ring_material = "{rings}"',
+            "[operation]",
+            f'inner_speed = "{speed:.1f} rpm"',
+            f'axial_load = "{axial:.3f} N"',
+            *[f'radial_load = "{radial:.3f} N"'] * bool(radial),
+            one.environment,
+            "[film]",
+            f"race_friction = {friction:.4f}",
+            *([] if is_bare else [f'material = "{one.film}"', f'thickness = "{thickness:.3f} um"']),
+            *_cage(ball, pitch, count, rng),
+            *_candidates(one, rng),
             *(["[stability]", *settings] if settings else []),
             "",
         ]
     )
 
 
-def bearing_text(seed: int) -> str:
-    """A study for `bearing`, with one of `LOADS`, at a speed from 0 to the least of the limits above.
-
-    Pure radial loads and moments leave balls unloaded. A moment comes with the axial load of a preload; half
-    of the rings under a radial load tilt freely.
-    """
-    rng = np.random.default_rng((19, seed))
-    name, kind = str(rng.choice(sorted(CLASSES))), LOADS[seed % len(LOADS)]
-    of_class, geometry = CLASSES[name], _geometry(CLASSES[name], rng)
-    most = min(MOST_SPEED, MOST_DN / geometry["bore"])
-    speed = most * rng.choice([0.0, rng.uniform(0.0, 0.05), rng.random(), rng.random()])
-    axial = _axial_load(of_class, geometry, rng)
-    radial = axial * rng.uniform(0.2, 2.0) if kind in ("radial", "combined") else 0.0
-    moment = axial * geometry["pitch"] * 1e-3 * rng.uniform(0.02, 0.4) if kind == "moment" else 0.0
-    return "\n".join(
-        [
-            f'title = "{name} bearing, {kind} load, seed {seed}"',
-            *_bearing(of_class, geometry, rng),
-            *_operation(speed, axial if kind != "radial" else 0.0, radial, moment, tilts=rng.random() < 0.5),
-            of_class.environment,
-            *_film(of_class, rng),
-            "",
-        ]
-    )
-
-
-def _geometry(of_class: Class, rng: np.random.Generator) -> dict[str, float]:
-    """Ball, pitch circle, bore and angle [mm, deg]: balls fill 60 to 80 % of the pitch circle."""
-    ball = rng.uniform(*of_class.ball_diameter)
-    count = int(rng.integers(8, 18))
-    pitch = count * ball / (math.pi * rng.uniform(0.6, 0.8))
-    angle = rng.uniform(*of_class.contact_angle)
-    bore = pitch - ball * rng.uniform(1.4, 1.8)
-    return {"ball": ball, "count": count, "pitch": pitch, "bore": bore, "angle": angle}
-
-
-def _axial_load(of_class: Class, geometry: dict[str, float], rng: np.random.Generator) -> float:
-    """Axial load [N] that gives the balls the class's load."""
-    ball_load = rng.uniform(*of_class.stribeck) * geometry["ball"] ** 2
-    return float(geometry["count"] * ball_load * math.sin(math.radians(geometry["angle"])))
-
-
-def _bearing(of_class: Class, geometry: dict[str, float], rng: np.random.Generator) -> list[str]:
-    ball, ring = of_class.materials[rng.integers(len(of_class.materials))]
-    low, high = of_class.conformity
-    return [
-        "[bearing]",
-        f'ball_diameter = "{geometry["ball"]:.4f} mm"',
-        f'pitch_diameter = "{geometry["pitch"]:.3f} mm"',
-        f"ball_count = {geometry['count']}",
-        f'contact_angle = "{geometry["angle"]:.2f} deg"',
-        f"inner_conformity = {rng.uniform(low, high):.4f}",
-        f"outer_conformity = {rng.uniform(low, high):.4f}",
-        f'bore = "{geometry["bore"]:.3f} mm"',
-        f'ball_material = "{ball}"',
-        f'ring_material = "{ring}"',
-    ]
-
-
-def _operation(
-    speed: float, axial: float, radial: float, moment: float = 0.0, *, tilts: bool = False
-) -> list[str]:
-    lines = ["[operation]", f'inner_speed = "{speed:.1f} rpm"', f'axial_load = "{axial:.3f} N"']
-    lines += [f'radial_load = "{radial:.3f} N"'] * bool(radial)
-    return lines + [f'moment = "{moment:.6f} N m"'] * (moment != 0.0 or (tilts and radial != 0.0))
-
-
-def _film(of_class: Class, rng: np.random.Generator) -> list[str]:
-    """A film, or bare races in a fifth of the studies."""
-    friction = rng.uniform(*of_class.race_friction)
-    thickness = rng.uniform(*of_class.thickness)
-    lines = ["[film]", f"race_friction = {friction:.4f}"]
-    if rng.random() < 0.2:
-        return lines
-    return [*lines, f'material = "{of_class.film}"', f'thickness = "{thickness:.3f} um"']
-
-
-def _cage(geometry: dict[str, float], rng: np.random.Generator) -> list[str]:
+def _cage(ball: float, pitch: float, count: int, rng: np.random.Generator) -> list[str]:
     """A polymer ring of plausible section, less its pockets; plays of 1 to 5 % of a ball."""
-    ball, pitch, count = geometry["ball"], geometry["pitch"], geometry["count"]
     height, width = ball * rng.uniform(0.3, 0.5), ball * rng.uniform(1.5, 2.0)
     volume = math.pi * pitch * width * height - count * math.pi / 4.0 * ball**2 * height
     mass = volume * rng.uniform(1200.0, 2000.0) * 1e-6

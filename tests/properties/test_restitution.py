@@ -8,7 +8,6 @@ from separatrix.chain.impact_restitution import (
     damping_for,
     damping_ratio,
     hertzian_restitution_factor,
-    race_damping_free_spin,
     restitution,
     restitution_factor,
 )
@@ -21,14 +20,6 @@ def test_the_inverse_undoes_the_factor(eta, stiffness, mass):
     """From eta to C_mu and back; tolerance: rounding, magnified by 1/(1-eta) near 1."""
     damping = damping_for(eta, stiffness, mass)
     assert restitution_factor(damping_ratio(stiffness, mass, damping)) == pytest.approx(eta, rel=1e-9)
-
-
-@given(positive, positive)
-def test_free_spin_never_damps_more_than_the_sum(inner, outer):
-    """4ab/(a+b) <= a+b, equal at a = b, and swapping the races changes nothing."""
-    assert race_damping_free_spin(inner, outer) <= (inner + outer) * (1 + 1e-15)
-    assert race_damping_free_spin(inner, outer) == race_damping_free_spin(outer, inner)
-    assert race_damping_free_spin(inner, inner) == pytest.approx(2.0 * inner, rel=1e-15)
 
 
 @given(positive, positive, st.floats(1.01, 10.0))

@@ -7,10 +7,12 @@ import pickle
 import re
 import sqlite3
 import sys
+import time
 from dataclasses import replace
 from multiprocessing.connection import Connection
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from separatrix.friction.friction_file import FrictionFile, FrictionTest
@@ -93,6 +95,14 @@ def refusal_line(path: str | Path, read=read_study) -> str:
     return message
 
 
+def log(path: Path, friction: float = 0.1, seed: int = 1, rows: int = 1500) -> None:
+    """Write a log in CSV: running-in from 0.2, then noise about a friction."""
+    time, rng = 0.5 * np.arange(rows), np.random.default_rng(seed)
+    values = friction + (0.2 - friction) * np.exp(-time / 40.0) + 0.004 * rng.standard_normal(rows)
+    lines = (f"{t:.2f},{f:.5f},20.0" for t, f in zip(time, values, strict=True))
+    path.write_text("time (s),friction coefficient,normal force (N)\n" + "\n".join(lines) + "\n")
+
+
 def column_map(document: dict, source: str = "column map") -> ColumnMap:
     """Return the column map of a parsed TOML document."""
     made = read_document(ColumnMap, Document(source, document, {})).value
@@ -122,6 +132,19 @@ def changed(base: str, change: str) -> str:
     old, _, new = change.partition(" =>")
     assert old in base
     return base.replace(old, new.removeprefix(" "), 1)
+
+
+def wait_until(happened, seconds: float = 120.0) -> None:
+    """Wait for something to happen."""
+    end = time.monotonic() + seconds
+    while not happened():
+        assert time.monotonic() < end, "waited in vain"
+        time.sleep(0.02)
+
+
+def root_of(page) -> Path:
+    """Return the folder of a page."""
+    return page.app.state.root
 
 
 def pieces(folder: Path) -> int:

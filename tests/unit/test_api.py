@@ -1,16 +1,18 @@
-"""The verbs as Python functions: text, tables, arrays and figure, equal to the command line's."""
+"""Answers as Python functions give them, and as the command line writes and shows them."""
 
 import copy
 import html
+import json
 from dataclasses import replace
+from importlib import resources
+from pathlib import Path
 
 import pytest
 from commands import SMALL, written
 
 import separatrix
-from separatrix.front import api
+from separatrix.front import api, main
 from separatrix.ground.errors import InputError
-from separatrix.verdict.long_jobs import Interrupted
 
 
 @pytest.fixture
@@ -48,23 +50,6 @@ def test_notes_are_in_the_answer_and_its_document(tmp_path):
     assert eta[:70] in " ".join(answer.summary().split())
 
 
-def test_an_interrupt_carries_the_answer_of_what_was_finished(small, tmp_path):
-    """And the folder keeps the runs for the next call."""
-
-    def stop(done, total):
-        if done > 0.6 * total:
-            raise KeyboardInterrupt
-
-    with pytest.raises(Interrupted) as caught:
-        api.stability(small, jobs=1, folder=tmp_path / "kept", progress=stop)
-    part = caught.value.finished
-    assert part.verb == "stability"
-    assert part.document()["complete"] is False
-    whole = api.stability(small, folder=tmp_path / "kept")
-    assert whole.document()["complete"] is True
-    assert whole.document() == api.stability(small).document()
-
-
 def test_a_report_of_a_study_is_a_document(small):
     """What the verbs answer, in one page; a progress that is asked for is told."""
     told = []
@@ -77,3 +62,37 @@ def test_a_report_of_a_study_is_a_document(small):
     assert found.summary().splitlines() == list(found.page.lead)
     assert found.page.lead[0] in html.unescape(found.html())
     assert found.pdf().startswith(b"%PDF-")
+
+
+def test_the_default_folder_is_named_after_the_study(elsewhere, capsys):
+    """Without `--out` the files are in a folder beside, with the study's name."""
+    assert main(["bearing", "le7"]) == 0
+    assert (Path("le7") / "bearing.html").exists()
+    assert "Text, figures and data are in le7/" in capsys.readouterr().out
+
+
+def test_a_check_fits_a_screen_and_full_shows_the_rest(elsewhere, capsys):
+    """Seven materials without a datum at 90 K are one note; what matters and what is assumed comes first."""
+    shipped = resources.files("separatrix") / "examples" / "cryogenic-turbopump.toml"
+    bare = shipped.read_text(encoding="utf-8")
+    lines = [line for line in bare.splitlines() if "ball_cage_stiffness" not in line]
+    Path("cold.toml").write_text("\n".join(lines).replace('"77 K"', '"90 K"'))
+    assert main(["check", "cold.toml"]) == 0
+    said = capsys.readouterr().out
+    assert len(said.splitlines()) <= 57
+    assert max(map(len, said.splitlines())) <= 96
+    assert said.count("not stated at 90 K") <= 3
+    assert said.count("Note: ") == 1
+    assert main(["check", "cold.toml", "--full"]) == 0
+    assert "cold.toml, line" in capsys.readouterr().out
+
+
+def test_the_speed_parameter_and_the_static_pressure_are_those_of_the_bearing(elsewhere, capsys):
+    """DN is bore times speed; the pressure at rest is that of `bearing` at 0 rpm."""
+    Path("still.toml").write_text('extends = "cryogenic-turbopump"\n[operation]\ninner_speed = "0 rpm"\n')
+    assert main(["check", "cryogenic-turbopump", "--json"]) == 0
+    checked = json.loads(capsys.readouterr().out)
+    assert main(["bearing", "still.toml", "--json"]) == 0
+    still = json.loads(capsys.readouterr().out)["contacts"]
+    for race in ("inner", "outer"):
+        assert checked["static"][race]["max_pressure"] == still[race]["max_pressure"]

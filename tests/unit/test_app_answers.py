@@ -1,9 +1,11 @@
 """What the page runs and shows: jobs with progress, answers as pages of blocks, points of a map, logs."""
 
+import importlib.util
 import json
 import os
 import re
 import signal
+import sys
 import time
 import zipfile
 from io import BytesIO
@@ -12,8 +14,10 @@ import pytest
 from commands import SMALL, work_undrawn
 from fastapi.testclient import TestClient
 
+from separatrix.front.console import is_importing
 from separatrix.front.page import editing
 from separatrix.front.page.server import application
+from separatrix.front.page.worker import Jobs
 from separatrix.ground.errors import InputError
 
 LONG = SMALL.replace('duration = "4 ms"', 'duration = "400 ms"').replace("runs = 4", "runs = 64")
@@ -118,12 +122,6 @@ def test_a_point_of_a_map_is_a_study_of_its_own(page, root):
     assert found["provenance"]["command"]["question"]["restitution_factor"] == "0.3"
 
 
-def test_everything_is_downloaded_at_once(page):
-    """The study and every file of its answers."""
-    with zipfile.ZipFile(BytesIO(page.get("/zip/small.toml").content)) as found:
-        assert {"small.toml", "small/rank.json", "small/bearing.txt"} <= {*found.namelist()}
-
-
 def test_options_are_fields_of_their_types(page, root):
     """A number in digits, a line each, a file beside the study, a flag; empty ones are left out."""
     own, table = page.app.state.page, root / "duty.csv"
@@ -180,3 +178,48 @@ def test_a_killed_computing_process_loses_only_the_job_in_hand(page):
     assert "resume to go on" in jobs(page)[0]
     page.post("/run/small.toml", data={"verb": "bearing"})
     until(page, lambda jobs: jobs[0].startswith("finished"), but=())
+
+
+def ended(queue, number):
+    """Wait for the end of a job; return it."""
+    until = time.monotonic() + PATIENCE
+    while (job := next(one for one in queue.all() if one.number == number)).is_active:
+        assert time.monotonic() < until, job
+        time.sleep(0.02)
+    return job
+
+
+def test_a_cancel_at_once_ends_its_job_and_no_other(tmp_path):
+    """Before the process has begun, in its first imports, or as the job ends: the next one finishes."""
+    queue = Jobs(tmp_path)
+    try:
+        for wait in (0.0, 0.4, 1.2):
+            name = f"after-{wait}.toml"
+            (tmp_path / name).write_text(SMALL)
+            first = queue.ask("bearing", name)
+            time.sleep(wait)
+            queue.cancel(first.number)
+            state = ended(queue, first.number).state
+            assert state == "cancelled" or (wait > 0.0 and state == "finished")
+            second = queue.ask("bearing", name)
+            found = ended(queue, second.number)
+            assert found.state == "finished", found
+    finally:
+        queue.close()
+
+
+def test_an_import_is_seen_from_within(tmp_path):
+    """An interrupt would leave a module half made."""
+    path = tmp_path / "slow_module.py"
+    path.write_text("import sys\nframe = sys._getframe()\n")
+    made = importlib.util.spec_from_file_location("slow_module", path)
+    module = importlib.util.module_from_spec(made)
+    made.loader.exec_module(module)
+    assert is_importing(module.frame)
+    assert not is_importing(sys._getframe())
+
+
+def test_everything_is_downloaded_at_once(page):
+    """The study and every file of its answers."""
+    with zipfile.ZipFile(BytesIO(page.get("/zip/small.toml").content)) as found:
+        assert {"small.toml", "small/rank.json", "small/bearing.txt"} <= {*found.namelist()}

@@ -4,7 +4,7 @@ import re
 import tomllib
 
 import pytest
-from commands import SMALL
+from commands import SMALL, root_of
 from fastapi.testclient import TestClient
 
 from separatrix.front.page import editing as draft
@@ -24,14 +24,6 @@ guidance = "outer"
 """
 
 
-@pytest.fixture
-def page(tmp_path):
-    """The page of a folder with one study, without its guard."""
-    (tmp_path / "small.toml").write_text(SMALL)
-    with TestClient(application(tmp_path)) as client:
-        yield client
-
-
 def version(text):
     """Version of the study that a form was drawn from."""
     return re.search('name="version" value="([0-9a-f]+)"', text)[1]
@@ -45,7 +37,7 @@ def edit(page, **fields):
 
 def text_of(page):
     """Text of small.toml, with its unsaved edits."""
-    return draft.current(_folder(page) / "small.toml").read_text()
+    return draft.current(root_of(page) / "small.toml").read_text()
 
 
 @pytest.mark.parametrize(
@@ -103,22 +95,18 @@ def test_a_wrong_unit_is_refused_beside_its_field(page):
     assert 'value="cage.mass"' in field
     assert "needs a unit of mass" in field
     assert "1 value is refused" in found.text
-    assert read_study(_folder(page) / "small.toml")
+    assert read_study(root_of(page) / "small.toml")
     mended = edit(page, field="cage.mass", value="26 g").text
     assert "Every value is accepted" in mended
     assert "mass = &#34;26 g&#34;" in mended  # the text beside it follows
 
 
-def _folder(page):
-    return page.app.state.root
-
-
 def test_a_fault_of_the_base_has_no_line_here(page):
     """Its message names the file; a fault of its own has its line."""
-    (_folder(page) / "base.toml").write_text(COMMENTED.replace("25 g", "25 mm"))
+    (root_of(page) / "base.toml").write_text(COMMENTED.replace("25 g", "25 mm"))
     text = 'extends = "base.toml"\n[cage]\nguidance = "none of these"\n'
-    (_folder(page) / "variant.toml").write_text(text)
-    faults = draft.check(_folder(page) / "variant.toml", _folder(page)).faults
+    (root_of(page) / "variant.toml").write_text(text)
+    faults = draft.check(root_of(page) / "variant.toml", root_of(page)).faults
     found = {one.key: (one.line, one.section) for one in faults if one.section == "cage"}
     assert (found["mass"], found["guidance"]) == ((0, "cage"), (3, "cage"))
 
@@ -142,15 +130,15 @@ def test_an_older_tab_changes_nothing(page):
 def test_a_draft_outlives_the_server_and_is_saved_or_discarded(page):
     """It is a hidden file beside the study."""
     edit(page, field="cage.mass", value="26 g")
-    with TestClient(application(_folder(page))) as other:
+    with TestClient(application(root_of(page))) as other:
         assert "mass = &#34;26 g&#34;" in other.get("/study/small.toml").text
         assert "unsaved edits" in other.get("/").text
         other.post("/discard/small.toml")
-    assert (_folder(page) / "small.toml").read_text() == SMALL
+    assert (root_of(page) / "small.toml").read_text() == SMALL
     edit(page, field="cage.mass", value="27 g")
     page.post("/save/small.toml")
-    assert 'mass = "27 g"' in (_folder(page) / "small.toml").read_text()
-    assert not draft.draft_path(_folder(page) / "small.toml").exists()
+    assert 'mass = "27 g"' in (root_of(page) / "small.toml").read_text()
+    assert not draft.draft_path(root_of(page) / "small.toml").exists()
 
 
 def test_a_study_with_a_fault_is_not_run(page):
@@ -158,7 +146,7 @@ def test_a_study_with_a_fault_is_not_run(page):
     edit(page, field="cage.mass", value="25 mm")
     found = page.post("/run/small.toml", data={"verb": "rank"}, headers={"HX-Request": "true"})
     assert (found.status_code, "is not run" in found.text) == (422, True)
-    assert (_folder(page) / "small.toml").read_text() == SMALL
+    assert (root_of(page) / "small.toml").read_text() == SMALL
 
 
 def test_each_fault_has_its_line(page):
@@ -173,8 +161,10 @@ def test_each_fault_has_its_line(page):
 
 
 def test_inherited_values_are_shown(page):
-    """A study that extends another shows the other's values."""
+    """A study that extends another shows the other's values, and what a verb lacks."""
     assert "Inherited: 11.1125 mm" in page.get("/study/small.toml").text
+    (root_of(page) / "cageless.toml").write_text('extends = "ball-218"\n')
+    assert "Needs the section [cage], which this study lacks." in page.get("/study/cageless.toml").text
 
 
 def test_a_list_with_comments_is_changed_in_the_text():
@@ -221,9 +211,9 @@ def test_a_text_that_the_form_cannot_change_stays(page):
 @pytest.mark.parametrize("name", ["../up", "a/b", ".hidden", "", "small", "x" * 200, "a\0b"])
 def test_a_new_study_has_a_plain_name_that_is_free(page, name):
     """Nothing is written for another one."""
-    before = sorted(_folder(page).iterdir())
+    before = sorted(root_of(page).iterdir())
     assert page.post("/new", data={"name": name}).status_code == 422
-    assert sorted(_folder(page).iterdir()) == before
+    assert sorted(root_of(page).iterdir()) == before
 
 
 def test_a_new_study_is_a_copy_or_the_template(page):
@@ -231,7 +221,7 @@ def test_a_new_study_is_a_copy_or_the_template(page):
     found = page.post("/new", data={"name": "mine", "base": "cryogenic-turbopump"})
     assert (found.status_code, found.url.path) == (200, "/study/mine.toml")
     page.post("/new", data={"name": "other"})
-    assert (_folder(page) / "other.toml").read_text() == template()
+    assert (root_of(page) / "other.toml").read_text() == template()
 
 
 @pytest.mark.parametrize(

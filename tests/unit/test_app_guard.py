@@ -7,11 +7,10 @@ import socket
 import subprocess
 import sys
 import threading
-import time
 from urllib.parse import parse_qs, quote, urlsplit
 
 import pytest
-from commands import SMALL
+from commands import SMALL, wait_until
 
 from separatrix.front.page.server import MOST_BYTES, Server
 
@@ -53,6 +52,11 @@ class Client:
         connection.close()
         return found
 
+    def answers(self):
+        """Return whether the page is there."""
+        with contextlib.suppress(OSError):
+            return self.ask("/")[0] == 200
+
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
@@ -83,8 +87,7 @@ def client(folder):
     server = Server(folder)
     thread = threading.Thread(target=server.serve_until_ended, daemon=True)
     thread.start()
-    while not server.started:
-        time.sleep(0.01)
+    wait_until(lambda: server.started)
     yield Client(server.link)
     server.should_exit = True
     thread.join(20)
@@ -125,25 +128,14 @@ def test_nothing_is_changed_for_another_site(client, folder, origin):
     assert sorted(folder.iterdir()) == before
 
 
-@pytest.mark.parametrize(
-    "place",
-    [
-        "/file/../secret.toml",
-        "/file/..%2fsecret.toml",
-        "/file/%2e%2e/secret.toml",
-        "/file//etc/passwd",
-        "/file/%2fetc%2fpasswd",
-        "/file/link.toml",
-        "/file/linked/secret.toml",
-        "/file/hostile.toml%00.png",
-        "/study/../secret.toml",
-        "/study/link.toml",
-        "/study/linked/secret.toml",
-        "/study/..%5csecret.toml",
-        "/static/..%2fserver.py",
-        "/static/%2e%2e/server.py",
-    ],
-)
+OUTSIDE = """
+/file/../secret.toml /file/..%2fsecret.toml /file/%2e%2e/secret.toml /file//etc/passwd /file/%2fetc%2fpasswd
+/file/link.toml /file/linked/secret.toml /file/hostile.toml%00.png /study/../secret.toml /study/link.toml
+/study/linked/secret.toml /study/..%5csecret.toml /static/..%2fserver.py /static/%2e%2e/server.py
+"""
+
+
+@pytest.mark.parametrize("place", OUTSIDE.split())
 def test_only_files_of_the_folder_are_reachable(client, place):
     """Neither dots, nor links, nor absolute names lead out of the folder."""
     status, _, text = client.ask(place)
@@ -217,10 +209,7 @@ def test_a_thousand_connections_do_not_end_it(client):
         assert len(lines) > 100
     for line in lines:
         line.close()
-    until = time.monotonic() + 15
-    while client.ask("/")[0] != 200:
-        assert time.monotonic() < until
-        time.sleep(0.1)
+    wait_until(client.answers, 15.0)
 
 
 def test_it_listens_on_this_machine_only(client):
@@ -258,19 +247,10 @@ def test_no_connection_leaves_the_machine(tmp_path, folder):
     command = [sys.executable, "-m", "separatrix", "app", str(root)]
     server = subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, text=True)
     try:
-        until = time.monotonic() + 120
         client = Client(next(line.strip() for line in server.stdout if "token=" in line))
-        while True:
-            try:
-                client.ask("/")
-                break
-            except OSError:
-                assert time.monotonic() < until
-                time.sleep(0.1)
+        wait_until(client.answers)
         assert client.ask("/run/small.toml", "POST", "verb=bearing")[0] == 200
-        while not (root / "small" / "bearing.json").exists():
-            assert time.monotonic() < until, client.ask("/jobs")[2]
-            time.sleep(0.2)
+        wait_until((root / "small" / "bearing.json").exists)
         assert client.ask("/answer/bearing/small.toml")[0] == 200
     finally:
         server.terminate()

@@ -4,11 +4,9 @@ import json
 import shutil
 
 import pytest
-from commands import SMALL
-from fastapi.testclient import TestClient
+from commands import SMALL, root_of
 
 from separatrix.front.page.folder import Folder
-from separatrix.front.page.server import application
 from separatrix.front.page.worker import Job, answered
 from separatrix.ground.errors import InputError
 from separatrix.verdict.ledger import NAME
@@ -30,21 +28,6 @@ def outside(tmp_path):
     for name in ("rank.txt", "report.html", "log.csv", "draft.toml"):
         (place / "small" / name).write_text(f"# {NEIGHBOUR}\n")
     return place / "small"
-
-
-@pytest.fixture
-def page(tmp_path):
-    """The page of a folder with one study, without its guard."""
-    root = tmp_path / "studies"
-    root.mkdir()
-    (root / "small.toml").write_text(SMALL)
-    with TestClient(application(root)) as client:
-        yield client
-
-
-def root_of(page):
-    """Return the folder of a page."""
-    return page.app.state.root
 
 
 def before(folder):

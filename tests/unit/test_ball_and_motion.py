@@ -102,9 +102,8 @@ ASKED = [
 
 
 @pytest.mark.parametrize(("arguments", "said"), ASKED)
-def test_a_model_that_cannot_be_is_refused(arguments, said, capsys, tmp_path, monkeypatch):
+def test_a_model_that_cannot_be_is_refused(arguments, said, capsys, elsewhere):
     """A study without a cage has no model of it; one line names the models there are."""
-    monkeypatch.chdir(tmp_path)
     assert said in refused(capsys, *arguments)
 
 

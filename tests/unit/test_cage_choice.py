@@ -121,7 +121,6 @@ def test_a_cage_that_is_no_candidate_must_have_its_friction_said(tmp_path):
         '[kinematics]\nmodel = "Outer-race control"\n',
         '[film]\nmaterial = "ptfe transfer film"\n',
         '[ranking]\nfriction = "Pin-on-disk 77K"\nmaterials = ["vespel SP211"]\n',
-        '[operation]\ninner_speed = "40\'000 rpm"\n',
     ],
 )
 def test_common_spellings_are_taken(tmp_path, text):

@@ -1,4 +1,7 @@
-"""Wrong input: a line on standard error for each mistake, exit status 2, nothing written."""
+"""Wrong input: a line on standard error for each mistake, exit status 2, nothing written.
+
+A file that a user names is a regular one: a pipe or a device, which may never end, is not opened.
+"""
 
 from __future__ import annotations
 
@@ -6,111 +9,52 @@ import os
 from pathlib import Path
 
 import pytest
+from commands import refused
+from test_study_refusals import VALID
 
+import separatrix
 from separatrix.front import main
+from separatrix.ground.errors import InputError
+from separatrix.ground.files import size_of
 
-VALID = """
-[bearing]
-ball_diameter = "11.1125 mm"
-pitch_diameter = "65 mm"
-ball_count = 13
-contact_angle = "25 deg"
-inner_conformity = 0.52
-outer_conformity = 0.52
-ball_material = "440C"
-ring_material = "440C"
-
-[operation]
-inner_speed = "15000 rpm"
-axial_load = "300 daN"
-
-[film]
-race_friction = 0.1
-material = "PTFE transfer film"
-thickness = "0.5 um"
-
-[cage]
-mass = "25 g"
-ball_cage_stiffness = "3e6 N/m"
-pocket_clearance = "0.6 mm"
-
-[stability]
-kicks = ["0.5 m/s"]
-runs = 4
-duration = "10 ms"
-
-[ranking]
-friction = "pin-on-disk-77K"
-"""
-
-WRONG_STUDIES = {  # one for each step of reading; every rule is in test_study_refusals
-    "broken TOML": ("[bearing]", "[bearing", "line"),
-    "deeply nested": ("ball_count = 13", "ball_count = " + "[" * 3000 + "]" * 3000, ""),
-    "duplicate key": ("ball_count = 13", "ball_count = 13\nball_count = 13", "line"),
-    "unknown key": ("ball_count = 13", "ball_cuont = 13", "ball_count"),
-    "missing section": ("[operation]", "[operations]", "operation"),
-    "nan": ('"300 daN"', '"nan N"', "axial_load"),
-    "unknown material": ('ball_material = "440C"', 'ball_material = "440D"', "440C"),
-    "more balls than fit": ("ball_count = 13", "ball_count = 30", "ball"),
-    "conformity of a radius": ("outer_conformity = 0.52", "outer_conformity = 5.88", "outer_conformity"),
-}
-
-
-@pytest.fixture(autouse=True)
-def _elsewhere(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-
-
-def refused(capsys, *arguments: str) -> str:
-    """Run a command that must be refused; return its lines, one for each mistake."""
-    before = sorted(Path().rglob("*"))
-    status = main(list(arguments))
-    out, err = capsys.readouterr()
-    assert status == 2, err
-    assert out == ""
-    assert all(line.startswith("separatrix: ") and len(line) < 1200 for line in err.splitlines()), err
-    assert err.endswith("\n")
-    assert "Traceback" not in err
-    assert sorted(Path().rglob("*")) == before
-    return err
-
-
-@pytest.mark.parametrize("case", WRONG_STUDIES)
-def test_a_wrong_study_is_refused_in_a_line(case, capsys):
-    """Each wrong study: exit status 2, a line with what it is about, nothing written."""
-    old, new, said = WRONG_STUDIES[case]
-    assert old in VALID
-    Path("study.toml").write_text(VALID.replace(old, new))
-    assert said in refused(capsys, "rank", "study.toml")
+pytestmark = pytest.mark.usefixtures("elsewhere")
 
 
 @pytest.mark.parametrize("verb", ["check", "rank"])
 def test_eight_mistakes_are_eight_lines(verb, capsys):
     """Every verb names all of them, each on a line of its own, in the order of the file."""
     mistakes = {
-        'ball_material = "440C"': 'ball_material = "silicon carbide"',
-        'ring_material = "440C"': 'ring_material = "404c"',
-        '"15000 rpm"': '"40,000 rpm"',
-        '"300 daN"': '"300"',
-        '"PTFE transfer film"': '"PTFE transfer"',
-        '"25 g"': '"25"',
-        "runs = 4": "runs = 0",
-        '"pin-on-disk-77K"': '"pin-on-disk"',
+        "bore": ('"50 mm"', '"50"'),
+        "ball_material": ('"440C"', '"silicon carbide"'),
+        "inner_speed": ('"15000 rpm"', '"40,000 rpm"'),
+        "axial_load": ('"300 daN"', '"300"'),
+        "material": ('"PTFE transfer film"', '"PTFE transfer"'),
+        "mass": ('"25 g"', '"25"'),
+        "runs": ("runs = 64", "runs = 0"),
+        "friction": ('"pin-on-disk-77K"', '"pin-on-disk"'),
     }
     text = VALID
-    for right, wrong in mistakes.items():
+    for right, wrong in mistakes.values():
         text = text.replace(right, wrong)
     Path("study.toml").write_text(text)
-    lines = refused(capsys, verb, "study.toml").splitlines()
-    steels, cage = ("ball_material", "ring_material"), ("mass", "runs", "friction")
-    keys = (*steels, "inner_speed", "axial_load", "material", *cage)
-    assert len(lines) == len(keys)
-    assert all(f"] {key} " in line for key, line in zip(keys, lines, strict=True))
+    assert main([verb, "study.toml"]) == 2
+    out, err = capsys.readouterr()
+    assert (out, [path.name for path in Path().iterdir()]) == ("", ["study.toml"])
+    for key, line in zip(mistakes, err.splitlines(), strict=True):
+        assert line.startswith("separatrix: ")
+        assert f"] {key} " in line
+
+
+def test_first_words(capsys):
+    """Without a command three lines: what it does, what to try, where more is; nothing is made."""
+    assert main([]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert len(lines) == 3
+    assert all(word in one for one, word in zip(lines, ("cage", "separatrix demo", "--help"), strict=True))
+    assert [*Path().iterdir()] == []
 
 
 USAGE = {
-    "no verb": ([], "is missing; choose one of new, check"),
-    "unknown verb": (["rnak", "le7"], "rnak"),
     "no study": (["bearing"], "STUDY"),
     "two studies": (["bearing", "le7", "le7"], "le7"),
     "unknown option": (["bearing", "le7", "--jsn"], "--jsn"),
@@ -119,8 +63,6 @@ USAGE = {
     "out without a folder": (["bearing", "le7", "--out"], "--out"),
     "new without a path": (["new"], "PATH"),
     "study with control characters": (["bearing", "a\x1b[31m\nb"], ""),
-    "a folder for a study": (["check", "folder.toml"], "folder"),
-    "the nearest shipped study": (["rank", "cryogenic-turbopmp"], "cryogenic-turbopump"),
     "out that is a file": (["rank", "cryogenic-turbopump", "--out", "taken.toml"], "--out"),
     "out below a file": (["rank", "cryogenic-turbopump", "--out", "taken.toml/below"], "--out"),
     "default folder that is a file": (["bearing", "study.toml"], "--out"),
@@ -180,9 +122,53 @@ def test_a_study_named_by_dots_alone_does_not_write_above(capsys):
     assert [path.name for path in Path("..").iterdir()] == ["below"]
 
 
-@pytest.mark.parametrize("verb", ["restitution", "stability", "map", "simulate", "rank"])
-def test_a_verb_that_needs_a_missing_section_says_so(verb, capsys):
-    """The cage verbs refuse a study without [cage]; `rank` one without [ranking]."""
-    start = "[ranking]" if verb == "rank" else "[cage]"
-    Path("study.toml").write_text(VALID[: VALID.index(start)])
-    assert start in refused(capsys, verb, "study.toml")
+LOG = "time (s),friction coefficient\n" + "".join(f"{t},0.{10 + t % 2}\n" for t in range(100))
+CALLS = [
+    *(["tribometer", path] for path in ("p.toml", "link.toml", "p.xlsx", "/dev/zero")),
+    *(["tribometer", "a.csv", "--map", path] for path in ("p.toml", "link.toml", "/dev/zero")),
+    *(["compare", path, path] for path in ("link.toml", "p.json", "saved", "/dev/zero")),
+    *(["check", path] for path in ("p.toml", "link.toml")),
+    *(["materials", "list", "--library", path] for path in ("p.toml", "link.toml")),
+    ["tribometer", "a.csv", "p.xlsx"],
+]
+
+
+@pytest.fixture
+def folder(elsewhere, tmp_path):
+    """A folder to stand in, with a log, and pipes without a writer."""
+    (tmp_path / "a.csv").write_text(LOG)
+    for name in ("p.toml", "p.xlsx", "p.json"):
+        os.mkfifo(name)
+    (tmp_path / "link.toml").symlink_to("p.toml")
+    (tmp_path / "saved").mkdir()
+    os.mkfifo("saved/simulate.json")
+    return tmp_path
+
+
+@pytest.mark.usefixtures("folder")
+@pytest.mark.parametrize("call", CALLS, ids=" ".join)
+def test_no_verb_waits_for_a_pipe(capsys, call):
+    """By its own name, by a link, with another ending, in a saved folder; a device without an end."""
+    assert " is not a regular file. Save its output to a file, and name that.\n" in refused(capsys, *call)
+
+
+def test_a_reader_that_is_called_by_itself_refuses_a_pipe_too(folder):
+    """One that the verbs reach only after a check of their own."""
+    with pytest.raises(InputError, match="is not a regular file"):
+        separatrix.load(folder / "p.json")
+
+
+def test_the_size_of_a_regular_file_is_told_and_all_else_refused(folder):
+    """Links are followed; no file, a name with a NUL or too long a name, a folder."""
+    (folder / "link.csv").symlink_to("a.csv")
+    assert size_of(folder / "link.csv", "it") == len(LOG)
+    wrong = {
+        folder / "none": "it cannot be read: no such file or directory.",
+        folder / "a\0b": "it cannot be read: no such file.",
+        folder / ("x" * 300): "it cannot be read: file name too long.",
+        folder: "it is a folder, not a file. Name a file in it.",
+    }
+    for path, line in wrong.items():
+        with pytest.raises(InputError) as caught:
+            size_of(path, "it")
+        assert str(caught.value) == line

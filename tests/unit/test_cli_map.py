@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 import json
-import signal
-import subprocess
-import time
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from commands import COMMAND, document, pieces, refused
+from commands import SMALL, document, refused
 
 from separatrix.chain.solution import solve
 from separatrix.front import main
@@ -19,25 +16,12 @@ from separatrix.study.reading import read_study
 from separatrix.verdict.parameter_axes import read_axis
 
 pytestmark = pytest.mark.usefixtures("undrawn")
-
-SMALL = """
-extends = "cryogenic-turbopump"
-title = "A small map"
-
-[cage]
-ball_cage_friction = 0.1
-
-[stability]
-kicks = ["0.5 m/s"]
-duration = "2 ms"
-"""
 QUICK = ["--points", "4", "--runs", "3", "--quiet"]
 
 
 @pytest.fixture(autouse=True)
-def _elsewhere(tmp_path, monkeypatch):
+def _small(elsewhere):
     """Run in a folder with nothing but the small study."""
-    monkeypatch.chdir(tmp_path)
     Path("small.toml").write_text(SMALL)
 
 
@@ -76,18 +60,14 @@ def test_an_axis_is_read_as_it_is_written(text, unit, values):
         ("cage.mas=1..2g", "Did you mean cage.mass?"),
         ("pocket_clearance=1..2mm", "Did you mean cage.pocket_clearance?"),
         ("cage.guidance=1..2", "is not a number"),
-        ("stability.runs=1..2", "is not a number"),
         ("cage.mass=1..2", 'Write "2 g"'),
         ("cage.mass=1..2mm", "needs a unit of mass"),
         ("cage.mass=2..1g", "must rise"),
-        ("cage.mass=1..1g", "must rise"),
         ("cage.mass=1g", "needs a range"),
         ("cage.mass=1...2g", "needs a range"),
-        ("cage.mass=..2g", "needs a range"),
         ("cage.mass=1,5..2g", "decimal point"),
         ("cage.mass=nan..2g", "finite"),
         ("cage.mass=1..2g:1", "between 2 and 1000 points"),
-        ("cage.mass=1..2g:1e2", "number of points and log"),
         ("cage.mass=1..2g:log:5", "number of points and log"),
         ("cage.mass=0..2g:log", "> 0 for log"),
         ("bearing.ball_count=8.5..16", "whole numbers"),
@@ -95,7 +75,6 @@ def test_an_axis_is_read_as_it_is_written(text, unit, values):
         ("bearing.ball_count=8..16:log", "no log"),
         ("restitution_factor=0..1.5", "between 0 and 1"),
         ("ball_cage_friction=-0.1..1", "between 0 and 2"),
-        ("film.race_friction=0,1..1", "decimal point"),
     ],
 )
 def test_a_wrong_axis_is_refused(text, said):
@@ -110,8 +89,6 @@ def test_a_wrong_axis_is_refused(text, said):
     [
         (["--x", "cage.mas=1..2g"], "Did you mean cage.mass?"),
         (["--y", "restitution_factor=0..1"], "restitution_factor twice"),
-        (["--kick", "0.5"], "needs a unit of speed"),
-        (["--kick", "0 m/s"], "must be > 1e-09"),
         (["--x", "kick=0.1..1m/s", "--kick", "1 m/s"], "exclude each other"),
         (["--points", "1"], "--points"),
         (["--runs", "0"], "--runs"),
@@ -167,30 +144,3 @@ def test_a_second_call_takes_finished_runs_and_says_so(capsys):
         out, err = capsys.readouterr()
         assert err.startswith("separatrix: 18 runs were taken from m/finished-runs.sqlite")
         assert (json.loads(out) == first) == (points == "3")
-
-
-SLOW = ["map", "slow.toml", "--points", "12", "--runs", "2", "--jobs", "1", "--json"]
-
-
-def test_an_interrupted_map_goes_on_and_ends_the_same(capsys):
-    """Ctrl-C: what is finished is answered, status 130; going on gives the map of an uninterrupted call."""
-    Path("slow.toml").write_text(SMALL.replace('"2 ms"', '"0.03 s"'))
-    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
-    process = subprocess.Popen([*COMMAND, *SLOW, "--out", "m"], **pipes)
-    for _ in range(6000):  # five minutes: a new machine compiles first
-        if pieces(Path("m")) > 0:
-            break
-        time.sleep(0.05)
-    process.send_signal(signal.SIGINT)
-    out, err = process.communicate(timeout=300)
-    part = json.loads(out)
-    assert (process.returncode, part["complete"]) == (130, False)
-    assert err.endswith("Run the same command to resume.\n")
-    left = [point for point in part["points"] if not point["runs"]]
-    assert {point["reason"] for point in left} == {"not run: interrupted"}
-    assert 0 < part["counts"]["not_run"] == len(left) < 144
-    assert main([*SLOW, "--out", "m"]) == 0
-    whole, said = capsys.readouterr()
-    assert "runs were taken from" in said
-    assert main(SLOW) == 0
-    assert json.loads(whole) == json.loads(capsys.readouterr().out)

@@ -8,23 +8,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from commands import document, refused
+from commands import SMALL, document, refused
 
 import separatrix
 from separatrix.cage import run_ensemble, settings_for
 from separatrix.front import main
-
-SMALL = """
-extends = "cryogenic-turbopump"
-title = "A small run"
-
-[cage]
-ball_cage_friction = 0.1
-
-[stability]
-kicks = ["0.5 m/s"]
-duration = "4 ms"
-"""
 
 SPACE = """
 extends = "cryogenic-turbopump"
@@ -72,9 +60,7 @@ def data(answered):
     return separatrix.load(answered / "simulate.json")
 
 
-@pytest.fixture(autouse=True)
-def _elsewhere(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
+pytestmark = pytest.mark.usefixtures("elsewhere")
 
 
 def simulated(folder: Path, capsys, *options: str) -> dict:
@@ -183,17 +169,6 @@ def test_a_ball_that_leaves_its_pocket_is_named_with_its_time(folder):
     assert 1 <= found.history.left_ball <= 13
     said = f"Ball {found.history.left_ball} reaches the edge of its pocket's wall at "
     assert said in words(found.summary())
-
-
-@pytest.mark.usefixtures("undrawn")
-@pytest.mark.parametrize(("ball", "said"), [("free", "free"), ("auto", "one state"), ("damper", "damper")])
-def test_the_text_says_which_ball_it_has(ball, said, folder, capsys):
-    """`[cage] ball` forces one; auto is one state."""
-    (folder / "ball.toml").write_text(SMALL.replace("[cage]", f'[cage]\nball = "{ball}"'))
-    assert main(["simulate", str(folder / "ball.toml"), "--out", "one", "--quiet"]) == 0
-    cage = json.loads(Path("one/simulate.json").read_text())["cage"]
-    has = {"free": ["free_ball", "traction"], "one state": ["traction"]}.get(said, [])
-    assert [name for name in ("free_ball", "traction") if cage[name]] == has
 
 
 @pytest.mark.parametrize(

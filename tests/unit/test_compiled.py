@@ -12,7 +12,7 @@ import pytest
 
 import separatrix
 from separatrix.ground import compiled
-from separatrix.ground.compiled import UNUSED, cache_folder, kernel_sources, source_stamp
+from separatrix.ground.compiled import UNUSED, cache_folder, source_stamp
 
 PACKAGE = Path(separatrix.__file__).parent
 
@@ -97,14 +97,6 @@ def test_a_change_in_any_file_that_a_kernel_can_see_is_seen(tmp_path, line):
     assert source_stamp(package) == stamp
     (package / "slots.py").write_text("FORCE = 2\n")
     assert source_stamp(package) != stamp
-
-
-def test_the_cage_and_the_study_are_sources_of_kernels_and_a_report_is_not():
-    """What the files of today come to."""
-    found = {str(path.relative_to(PACKAGE)) for path in kernel_sources(PACKAGE)}
-    known = {"cage/rows.py", "cage/moving_cage.py", "study/study.py", "chain/hertz.py", "ground/compiled.py"}
-    assert known <= found
-    assert not any(name.startswith(("report", "figures", "cli", "results")) for name in found)
 
 
 def test_caches_of_other_sources_are_removed_once_they_are_old(tmp_path, monkeypatch):

@@ -12,7 +12,6 @@ from separatrix.study.distribution import (
     log_normal,
     log_uniform,
     normal,
-    positive_alternative,
     samples,
     uniform,
 )
@@ -68,17 +67,6 @@ def test_samples_are_drawn_with_equal_weights_in_rising_order():
     assert drawn.tolist() == [0.1, 0.1, 0.2, 0.2, 0.3, 0.3]
     assert law.mean == pytest.approx(np.mean([0.1, 0.2, 0.2, 0.3]), rel=1e-15)
     assert law.standard_deviation == pytest.approx(np.std([0.1, 0.2, 0.2, 0.3]), rel=1e-14)
-
-
-def test_a_normal_distribution_that_reaches_zero_has_a_log_normal_one_in_its_place():
-    """Same mean, same standard deviation, same text; none where there is no need or no positive mean."""
-    wide = normal(mean=1.0, standard_deviation=0.25, text="as written")
-    other = positive_alternative(wide)
-    assert other.kind == "log-normal"
-    assert (other.mean, other.standard_deviation, other.text) == (1.0, 0.25, "as written")
-    assert positive_alternative(LAW) is None
-    assert positive_alternative(normal(mean=-1.0, standard_deviation=1.0)) is None
-    assert positive_alternative(uniform(low=-1.0, high=1.0)) is None
 
 
 @pytest.mark.parametrize(

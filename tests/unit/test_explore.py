@@ -75,6 +75,15 @@ def test_a_separation_by_one_input_stays_finite():
     assert abs(b[2]) < 2.0
 
 
+@dataclass(frozen=True)
+class Judged:
+    """What counting reads of a judgement."""
+
+    verdict: Verdict
+    by_kick: tuple[KickCount, ...]
+    worst_kick: float
+
+
 def judged(verdict, *settles, runs=64):
     """As a judgement: its verdict, counts by kick (the rest whirling) and worst kick."""
     known = dict.fromkeys(("drifts", "unresolved", "kept_by_land"), 0)
@@ -91,7 +100,7 @@ def judged(verdict, *settles, runs=64):
         for i, n in enumerate(settles)
     )
     worst = min(found, key=lambda one: one.calm)
-    return SimpleNamespace(verdict=verdict, by_kick=found, worst_kick=worst.kick)
+    return Judged(verdict, found, worst.kick)
 
 
 @pytest.mark.parametrize(
@@ -116,15 +125,6 @@ def test_a_kick_that_plainly_settles_more_is_not_run_further():
     assert [settles_more(one, near) for one in near.by_kick] == [False, False]
 
 
-@dataclass(frozen=True)
-class Judged:
-    """What counting reads of a judgement."""
-
-    verdict: Verdict
-    by_kick: tuple[KickCount, ...]
-    worst_kick: float
-
-
 def test_a_kick_that_is_left_out_leaves_every_column_of_runs_in_space(monkeypatch):
     """The second block runs the worst kick alone; columns that only space has are as long as the others."""
 
@@ -133,8 +133,7 @@ def test_a_kick_that_is_left_out_leaves_every_column_of_runs_in_space(monkeypatc
         return Ensemble(**columns | {"kicks": np.array(kicks), "duration": 0.1})
 
     total = 2 * uncertain_study.BLOCK
-    looks = [judged(Verdict.UNDECIDED, 60, 20), judged(Verdict.UNDECIDED, 20), judged(Verdict.UNDECIDED, 40)]
-    looks = iter([Judged(**vars(one)) for one in looks])
+    looks = iter([judged(Verdict.UNDECIDED, *counts) for counts in ((60, 20), (20,), (40,))])
     monkeypatch.setattr(uncertain_study, "judge", lambda *_, **__: next(looks))
     monkeypatch.setattr(uncertain_study, "transmitted_force", lambda _: 1.0)
     bearings = SimpleNamespace(runs=range(total), kicks=(0.1, 0.2), ensemble=ensemble, central={"A": None})

@@ -89,11 +89,15 @@ def test_python_calls_kernels_and_no_parts_of_them():
         assert not {(one.name, called) for one in plain for called in calls(one) & parts}, path
 
 
+TESTED = "test = [{material='a', counterface='b', medium='c', friction=1}]"
 LIGHT = {
     "import separatrix, separatrix.front.cli": "numpy scipy numba matplotlib xarray",
     "from separatrix.front import main; main(['bearing', 'ball-218', '--json', '--quiet'])": (
         "scipy.optimize pandas matplotlib xarray pydantic"
     ),
+    "from separatrix.front import main; main(['materials', 'list', '--json'])": "numba scipy matplotlib",
+    "from separatrix.friction.friction_file import FrictionFile; from separatrix.ground import reader; "
+    f'reader.read_text(FrictionFile, "{TESTED}", "")': "numpy",
 }
 """What starts quickly: a program, and the large libraries that it does without."""
 

@@ -2,13 +2,11 @@
 
 import json
 import pickle
-import re
 from importlib.resources import files
 
 import pytest
-from commands import refusal, written
+from commands import written
 
-from separatrix.ground.errors import DataError
 from separatrix.ground.schema import keys_of
 from separatrix.study import library
 from separatrix.study.library import Datum, Library, choose, contradictions
@@ -148,15 +146,6 @@ def test_numbers_that_answers_depend_on_have_not_moved():
     assert (liquid, vapour) == (pytest.approx(806.5, rel=1e-3), pytest.approx(4.622, rel=3e-3))
 
 
-@pytest.mark.parametrize("kind", ["bearing material", "film", "cage material", "friction table"])
-def test_an_unknown_name_is_answered_with_the_known_ones(kind):
-    """Names are exact: no record is substituted for another."""
-    with pytest.raises(DataError, match=LIBRARY.names(kind)[0]):
-        LIBRARY.record("friction table", "none") if kind == "friction table" else LIBRARY.material(
-            kind, "440 C"
-        )
-
-
 def datum(value, temperature):
     """A number that holds at a temperature or over a range."""
     return Datum(value=value, source="test", confidence="guess", temperature=temperature)
@@ -179,17 +168,6 @@ def test_the_datum_stated_for_a_temperature_is_chosen_and_none_is_extrapolated_i
     choice = choose(data, temperature, "modulus")
     assert choice.datum.value == value
     assert (choice.caution is None) if words is None else (words in choice.caution)
-
-
-def test_a_study_at_a_temperature_without_a_datum_says_so(tmp_path):
-    """The film's modulus at 150 K is that of 77 K, in words; the shipped study at 77 K has nothing to say."""
-    path = written(tmp_path, 'extends = "cryogenic-turbopump"\n[operation]\ntemperature = "120 K"\n')
-    said = r"PTFE transfer film \(modulus, Poisson's ratio: not stated at 120 K, the value at 77 K is used\)"
-    study = read_study(path)
-    (note,) = study.notes
-    assert re.search(said, note)
-    assert resolved(study)["film"]["material"]["cautions"]
-    assert read_study("cryogenic-turbopump").notes == ()
 
 
 def test_cage_moduli_are_cautioned_only_where_they_act(tmp_path):
@@ -232,12 +210,9 @@ def test_a_library_is_named_by_the_study(tmp_path, key):
 
 
 def test_a_record_hides_a_shipped_one_only_if_it_says_so(tmp_path, case):
-    """Refused without `replaces = true`; with it the study has the user's numbers."""
-    text = OURS.replace('[film."Our film"]', '[film."PTFE transfer film"]')
-    written(tmp_path, text, "materials.toml")
+    """With it the study has the user's numbers; refused without, as test_wrong_materials has it."""
     case.write_text(STUDY.replace("Our film", "PTFE transfer film"))
-    assert "has the name of a shipped film" in refusal(case)
-    text = text.replace('[film."PTFE transfer film"]', '[film."PTFE transfer film"]\nreplaces = true')
+    text = OURS.replace('[film."Our film"]', '[film."PTFE transfer film"]\nreplaces = true')
     written(tmp_path, text, "materials.toml")
     assert read_study(case).film.body.elastic_modulus == 2e9
 

@@ -12,8 +12,8 @@ from scipy.integrate import quad
 
 from separatrix.ground.document import Part
 from separatrix.present import draw, view
-from separatrix.verbs.parts import cage_scene, run_panels
-from separatrix.verbs.parts.cage_scene import A_TURN, AROUND, MOST_FRAMES, frame_moments, scene
+from separatrix.verbs.parts import run_pictures
+from separatrix.verbs.parts.run_pictures import A_TURN, AROUND, MOST_FRAMES, frame_moments, scene
 
 LENGTHS = ("position", "axial_place", "half_play", "largest_offset")
 
@@ -73,8 +73,8 @@ ODD = {
 @pytest.mark.parametrize("answer", ODD.values(), ids=ODD.keys())
 def test_any_run_has_panels(answer):
     """Those of the plane, and in space that of the tilt."""
-    kinds = (run_panels.orbit, run_panels.spectrum, run_panels.offset, run_panels.forces)
-    for one in (*kinds, *[run_panels.tilt] * ("lean" in answer)):
+    kinds = (run_pictures.orbit, run_pictures.spectrum, run_pictures.offset, run_pictures.forces)
+    for one in (*kinds, *[run_pictures.tilt] * ("lean" in answer)):
         draw.draw_panel(Figure().add_subplot(), one(answer))
 
 
@@ -99,7 +99,7 @@ def test_the_ball_set_turns_by_the_integral_of_its_speed():
 
     expected = [quad(speed, 0.0, t, points=[4e-3])[0] for t in answer.time]
     # quadrature
-    assert cage_scene.turned_by(answer.cage, np.array(answer.time)) == pytest.approx(expected, rel=1e-9)
+    assert run_pictures.turned_by(answer.cage, np.array(answer.time)) == pytest.approx(expected, rel=1e-9)
 
 
 @pytest.mark.parametrize("answer", [ODD["ordinary"], ODD["in space"], ODD["one sample"]])
@@ -121,21 +121,21 @@ def test_the_force_of_a_frame_is_the_largest_since_the_one_before():
     """Of samples between two frames none is lost."""
     forces = np.zeros((6, 1))
     forces[2] = 7.0
-    assert cage_scene._largest_since(forces, np.array([0, 3, 5])).ravel().tolist() == [0.0, 7.0, 0.0]
+    assert run_pictures._largest_since(forces, np.array([0, 3, 5])).ravel().tolist() == [0.0, 7.0, 0.0]
 
 
 def test_a_course_in_time_keeps_its_extremes():
     """Of many samples the least and the largest of each part are drawn, with the first and the last."""
     values = np.zeros(20_000)
     values[[7, 11_111]] = 3.0, -2.0
-    places = run_panels.thinned(values)
+    places = run_pictures.thinned(values)
     assert {0, 7, 11_111, 19_999} <= set(places.tolist())
-    assert places.size <= run_panels.SHOWN + 2
+    assert places.size <= run_pictures.SHOWN + 2
 
 
 def test_the_pockets_bound_the_path_by_a_polygon():
     """Half way between the normals of two of six lines the centre goes farther, by 1 over cos 30 deg."""
-    found = cage_scene.pocket_boundary(run(count=3))
+    found = run_pictures.pocket_boundary(run(count=3))
     assert found.min() == pytest.approx(3e-4)
     # half a degree from one direction to the next
     assert found.max() == pytest.approx(3e-4 / np.cos(np.pi / 6), rel=1e-4)

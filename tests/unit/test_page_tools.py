@@ -2,8 +2,9 @@
 
 import json
 
-import numpy as np
 import pytest
+from commands import log
+from test_reference_tables import missing
 
 from separatrix.ground.document import Part, part_of
 from separatrix.ground.errors import InputError
@@ -12,10 +13,9 @@ from separatrix.present.figure import Across
 from separatrix.present.text import text
 from separatrix.study.reading import read_study
 from separatrix.verbs import bearing, compare, computed, tribometer
-from separatrix.verbs.answer_files import document
+from separatrix.verbs.answer_files import document, read_answer, read_answers, read_folder
 from separatrix.verbs.compare import compared as compared_answers
 from separatrix.verbs.compare import difference_interval, differing, results
-from separatrix.verbs.saved_answers import read_answer, read_answers, read_folder
 from separatrix.verdict.judgement import wilson_interval
 
 STUDY = read_study("cryogenic-turbopump")
@@ -109,6 +109,7 @@ def test_the_most_loaded_ball_is_compared(tmp_path):
     study["film"]["thickness"]["value"] = 3e-7
     balls = [ball | {"load_inner": 2.0 * ball["load_inner"]} for ball in ANSWER["balls"]]
     found = compared(tmp_path, balls=balls, study=study)
+    assert missing("compare", found) == set()
     assert [(row["place"], row["name"]) for row in found["rows"]] == [("most loaded ball", "load_inner")]
     assert [(one["key"], one["first"], one["second"]) for one in found["inputs"]] == [
         ("film.thickness", 5e-7, 3e-7)
@@ -149,10 +150,7 @@ def tests_of_logs(tmp_path_factory):
     """Return the document of two logs: running-in from 0.2, then noise about a friction."""
     folder = tmp_path_factory.mktemp("logs")
     for seed, name in enumerate(("a.csv", "b.csv")):
-        time, rng = 0.5 * np.arange(1500), np.random.default_rng(seed)
-        values = 0.08 + 0.12 * np.exp(-time / 40.0) + 0.004 * rng.standard_normal(1500)
-        lines = (f"{t:.2f},{f:.5f},20.0" for t, f in zip(time, values, strict=True))
-        (folder / name).write_text("time (s),friction coefficient,normal force (N)\n" + "\n".join(lines))
+        log(folder / name, 0.08, seed)
     found = tribometer.compute(tribometer.Options(files=(folder,)))
     return json.loads(json.dumps(found, allow_nan=False))
 

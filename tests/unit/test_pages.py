@@ -10,6 +10,7 @@ from dataclasses import replace
 import pytest
 import xarray as xr
 from matplotlib import image
+from test_reference_tables import missing
 
 import separatrix
 from separatrix.front import api, main
@@ -25,9 +26,8 @@ from separatrix.present.spreadsheet import spreadsheet
 from separatrix.present.text import text
 from separatrix.study.reading import read_study
 from separatrix.verbs import VERBS, verb_named
-from separatrix.verbs.answer_files import page_of_document
+from separatrix.verbs.answer_files import page_of_document, refusing_damage
 from separatrix.verbs.parts import quantity_text
-from separatrix.verbs.saved_answers import refusing_damage
 from separatrix.verdict.ledger import NAME
 from separatrix.verdict.long_jobs import Interrupted
 
@@ -158,9 +158,8 @@ def test_python_and_command_line_answer_alike(verb, folder, answers):
     assert has(found, "separatrix_version verb name title study seed warnings provenance")
 
 
-def test_json_alone_is_printed_and_no_file_is_written(small, answers, capsys, tmp_path, monkeypatch):
+def test_json_alone_is_printed_and_no_file_is_written(small, answers, capsys, elsewhere, tmp_path):
     """One document on standard output, nothing else anywhere."""
-    monkeypatch.chdir(tmp_path)
     assert main(["bearing", str(small), "--json", "--quiet"]) == 0
     out, err = capsys.readouterr()
     assert (err, list(tmp_path.iterdir())) == ("", [])
@@ -188,6 +187,22 @@ def test_documents_have_the_keys_that_scripts_rely_on(verb, path, folder):
     found = records(saved(folder, verb), path)
     assert found
     assert all(has(one, KEYS[verb, path]) for one in found)
+
+
+@pytest.mark.parametrize("verb", VERBS)
+def test_every_name_of_a_document_has_a_line(verb, folder):
+    """In the generated reference."""
+    assert missing(verb, saved(folder, verb)) == set()
+
+
+@pytest.mark.parametrize("verb", [verb for verb in VERBS if verb_named(verb).needs])
+def test_a_verb_says_which_sections_it_needs(verb):
+    """Of a study that has neither a cage nor candidates."""
+    needs = verb_named(verb).needs
+    said = " and ".join(rf"\[{one}\]" for one in needs)
+    said += rf" are missing; `{verb}` needs them" if len(needs) > 1 else rf" is missing; `{verb}` needs it"
+    with pytest.raises(InputError, match=rf"^le7: {said}\. See `separatrix new`"):
+        getattr(api, verb)("le7", **CALLS.get(verb, {}))
 
 
 def test_what_is_null_has_a_reason(folder):

@@ -10,7 +10,6 @@ import pytest
 from separatrix.cage import moving_cage
 from separatrix.chain.pocket_friction import with_scatter
 from separatrix.chain.solution import solve
-from separatrix.ground.errors import InputError
 from separatrix.study.reading import read_study
 from separatrix.study.study import (
     CageModel,
@@ -271,12 +270,6 @@ def test_a_cage_by_its_shape_has_the_mass_of_each_candidate():
     assert found["heavy"].restitution_factor != found["light"].restitution_factor
     given = rank(replace(study, cage=replace(cage, mass=0.02), ranking=question)).overall
     assert {row.cage_mass for row in given} == {0.02}
-
-
-def test_a_study_without_candidates_is_refused():
-    """One line with the section that is missing."""
-    with pytest.raises(InputError, match=r"lacks the section \[ranking\]"):
-        rank(quick_study(ranking=None))
 
 
 @pytest.mark.parametrize("bad", [np.inf, np.nan])

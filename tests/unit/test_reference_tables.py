@@ -1,11 +1,8 @@
-"""The generated reference: each key of a study, and each name in a real document of every verb."""
+"""The generated reference: each key of a study, and each name of a document (as test_pages asks)."""
 
 import re
-from dataclasses import replace
 
-import numpy as np
 import pytest
-from commands import document
 from reference_meanings import lines_of
 from reference_tables import (
     PAPER,
@@ -19,42 +16,12 @@ from reference_tables import (
     units_of_name,
 )
 
-import separatrix
 from separatrix.study.template import sections, study_keys
-from separatrix.verbs.parts.quantities import QUANTITIES
+from separatrix.verbs.parts.quantity_text import QUANTITIES
 from separatrix.verdict.ranking_records import Ranked
 
 BY_NAME = {"study", "provenance", "units", "metadata", "slopes", "tested"}
 """Parts of a document that are not records: their keys are those of a study, of a log, or conditions."""
-
-FULL = separatrix.read_study("cryogenic-turbopump")
-SMALL = replace(
-    FULL,
-    stability=replace(FULL.stability, runs=1, duration=0.01, kicks=(0.5,), restitution_factors=(0.3, 0.6)),
-    ranking=replace(FULL.ranking, candidates=FULL.ranking.candidates[1:3]),
-)
-IN_SPACE = replace(SMALL, cage=replace(SMALL.cage, motion=separatrix.study.study.MotionModel.SPACE))
-WEARS = replace(
-    SMALL, wear=separatrix.study.study.WearRates(film_wear=5e-18, cage_wear=1e-15, bare_friction=0.35)
-)
-WORN = replace(SMALL, film=replace(SMALL.film, wear=separatrix.study.study.Wear(friction=0.3, share=0.2)))
-
-ASKED = {
-    "check": lambda: separatrix.check(SMALL),
-    "bearing": lambda: separatrix.bearing(SMALL),
-    "traction": lambda: separatrix.traction(SMALL),
-    "restitution": lambda: separatrix.restitution(WORN),
-    "mobility": lambda: separatrix.mobility(SMALL),
-    "stability": lambda: separatrix.stability(SMALL, jobs=1),
-    "map": lambda: separatrix.map(SMALL, points=2, runs=1, jobs=1),
-    "simulate": lambda: separatrix.simulate(SMALL),
-    "rank": lambda: separatrix.rank(SMALL, jobs=1),
-    "sensitivity": lambda: separatrix.sensitivity(SMALL, samples=64, jobs=1),
-    "sweep": lambda: separatrix.sweep(SMALL, "film.thickness=0.2..1um:2", jobs=1),
-    "life": lambda: separatrix.life(WEARS, samples=64, revolutions=1e5, jobs=1),
-    "simulate, in space": lambda: separatrix.simulate(IN_SPACE),
-    "compare": lambda: separatrix.compare(*(separatrix.simulate(SMALL, run=run) for run in (0, 1))),
-}
 
 
 def names_in(value):
@@ -75,27 +42,6 @@ COMMON = {"separatrix_version", "verb", "name", "title", "study", "seed", "warni
 def missing(verb, found):
     """Names of a document without a line; the key of a study that a sweep varies is not one."""
     return {name for name in names_in(found) if "." not in name} - names_of(verb) - COMMON
-
-
-@pytest.mark.parametrize("what", ASKED)
-def test_every_name_of_a_document_has_a_line(what):
-    """A document of each verb that takes a study, small but complete; two runs that differ in inputs, too."""
-    found, verb = ASKED[what]().document(), what.partition(",")[0]
-    assert found["verb"] == verb
-    assert verb != "compare" or (found["rows"] and found["inputs"])
-    assert missing(verb, found) == set()
-
-
-def test_every_name_of_the_verbs_without_a_study_has_a_line(tmp_path, monkeypatch, capsys):
-    """Logs of a tribometer with what slid on what."""
-    monkeypatch.chdir(tmp_path)
-    rows = (f"{t},{0.1 + 0.003 * np.sin(t):.4f}" for t in range(600))
-    (tmp_path / "a.csv").write_text("time (s),friction coefficient\n" + "\n".join(rows) + "\n")
-    what = 'material = "PEEK"\ncounterface = "440C"\nmedium = "air"\nslip_speed = "1 m/s"\n'
-    (tmp_path / "map.toml").write_text("[test]\n" + what)
-    found = document(capsys, "tribometer", "a.csv", "--map", "map.toml")
-    assert found["fits"]
-    assert missing("tribometer", found) == set()
 
 
 @pytest.mark.parametrize("verb", VERBS)

@@ -86,9 +86,8 @@ def stored(tmp_path_factory):
 
 
 @pytest.fixture
-def put(tmp_path, monkeypatch):
+def put(elsewhere):
     """Return what writes an answer into an empty folder."""
-    monkeypatch.chdir(tmp_path)
 
     def write(answer):
         Path("answer.json").write_text(json.dumps(answer), encoding="utf-8")

@@ -33,41 +33,6 @@ CAGE = moving_cage(solve(WHEEL), 0.2)
 QUICK = replace(settings_for(WHEEL.stability, CAGE), runs=PART + 5, duration=0.01)
 
 
-def test_work_comes_back_by_its_place():
-    """Each result is that of its place, however many threads."""
-    told = []
-    found = Runner(jobs=3).work_out(
-        lambda x: x * x, range(20), into=dict, progress=lambda *at: told.append(at)
-    )
-    assert found == {x: x * x for x in range(20)}
-    assert list(dict.fromkeys(told)) == [(0, 0), *((i, 20) for i in range(1, 21))]
-
-
-def test_an_interrupt_keeps_what_is_done():
-    """Ctrl-C after three items: the exception carries those, and no thread is left behind."""
-
-    def stop(done, total):
-        if done == 3:
-            raise KeyboardInterrupt
-
-    def work(item):
-        time.sleep(1e-3)
-        return item + 1
-
-    with pytest.raises(Interrupted) as caught:
-        Runner().work_out(work, range(500), into=dict, progress=stop)
-    found = caught.value.finished
-    assert [found[i] for i in range(3)] == [1, 2, 3]
-    assert len(found) < 500
-    assert not [thread for thread in threading.enumerate() if "ThreadPool" in thread.name]
-
-
-def test_a_fault_in_the_work_is_not_swallowed():
-    """An exception of one item is raised, not turned into a gap."""
-    with pytest.raises(ZeroDivisionError):
-        Runner(jobs=2).work_out(lambda x: 1 // x, [1, 0], into=dict)
-
-
 def test_places_that_follow_are_computed_once():
     """A place that two others ask for is computed once, and progress counts it."""
     computed, told = [], []
@@ -138,6 +103,7 @@ def test_an_interrupt_is_noticed_and_breaks_in_nowhere():
     assert [found[i] for i in range(3)] == [0, 1, 2]
     assert len(found) < 100
     assert runner.stop.is_set
+    assert not [thread for thread in threading.enumerate() if "ThreadPool" in thread.name]
     assert (signal.getsignal(signal.SIGINT), signal.getsignal(signal.SIGTERM)) == before
     with pytest.raises(Interrupted) as caught:
         runner.work_out(work, [7], into=dict)
@@ -325,13 +291,12 @@ runs = 16
 
 
 @pytest.mark.usefixtures("undrawn")
-def test_a_killed_job_goes_on_to_the_same_bytes(tmp_path, monkeypatch, capsys):
+def test_a_killed_job_goes_on_to_the_same_bytes(elsewhere, tmp_path, capsys):
     """SIGKILL with some of the runs kept: no other file is left, and the next call takes those runs.
 
     The ledger is the same for every verb; those of rank and map that are interrupted go on in test_ranking
     and test_stability_map.
     """
-    monkeypatch.chdir(tmp_path)
     Path("s.toml").write_text(STUDY)
     given = "sweep s.toml --vary ball_cage_friction=0.1..0.4:6 --verdicts --json --jobs 1"
     call = given.split()

@@ -76,17 +76,6 @@ def test_the_interval_shrinks_with_the_root_of_the_runs():
     assert width(64) / width(1024) == pytest.approx(4.0, rel=0.3)
 
 
-def test_the_interval_covers_the_truth_as_often_as_it_says():
-    """Binomial luck: of 1000 ensembles 95 % hold the truth, less 1.5 deviations (0.7 %); seen: 97."""
-    numbers = np.random.default_rng(7)
-    held = 0
-    for _ in range(1000):
-        look = lambda f, _, runs: Count(int(numbers.binomial(runs, logistic(0.1, 8.0)(f))), runs)  # noqa: E731
-        found = Response(look, 64).crossing(0.5, 96, 0.08)
-        held += found.low <= 0.1 <= found.high
-    assert held >= 940
-
-
 def known_counter(cage, settings, seed):
     """Counter of a known probability, whatever the cage: binomial luck, the same for the same runs."""
     counter = GrowthCounter(cage, settings)

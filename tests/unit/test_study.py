@@ -3,59 +3,33 @@
 import json
 import math
 import pickle
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from cages import BEARING
 from commands import written
 from test_study_refusals import VALID
 
 from separatrix.ground.errors import InputError
 from separatrix.ground.units import UNITS
+from separatrix.study.keys import with_values
 from separatrix.study.reading import read_study
 from separatrix.study.sources import resolved
 from separatrix.study.study import (
     ORDER,
-    BallBearing,
     Film,
-    Friction,
     KinematicModel,
-    Material,
     Operation,
     Study,
+    Wear,
+    Worn,
     shipped_studies,
 )
 from separatrix.study.template import template
-
-STEEL = Material(name="steel", elastic_modulus=2e11, poisson_ratio=0.3, density=7800.0)
+from separatrix.verdict.parameter_axes import value_in, varied
 
 BASE = VALID.partition("[stability]")[0].replace('[kinematics]\nmodel = "free"\n\n', "")
-
-
-def bearing(**changes):
-    """A valid bearing with some fields changed."""
-    fields = {
-        "ball_diameter": 0.01,
-        "pitch_diameter": 0.06,
-        "ball_count": 12,
-        "contact_angle": 0.4,
-        "inner_conformity": 0.52,
-        "outer_conformity": 0.53,
-        "ball_material": STEEL,
-        "ring_material": STEEL,
-    }
-    return BallBearing(**fields | changes)
-
-
-def study(**changes):
-    """A valid study with some parts changed."""
-    parts = {
-        "name": "test",
-        "title": "Test",
-        "bearing": bearing(),
-        "operation": Operation(inner_speed=1000.0, axial_load=1000.0),
-        "film": Film(race_friction=0.1),
-    }
-    return Study(**parts | changes)
 
 
 @pytest.fixture
@@ -66,12 +40,11 @@ def read(tmp_path):
 
 def test_balls_fit_up_to_touching():
     """Balls of neighbouring places touch when D = d_m sin(pi/Z)."""
-    touching = 0.06 * math.sin(math.pi / 12)
-    assert bearing(ball_diameter=touching * (1 - 1e-9)).ball_gap == pytest.approx(
-        touching * 1e-9, rel=1e-6
-    )  # cancellation
-    with pytest.raises(InputError, match="at most 11"):
-        bearing(ball_diameter=touching * (1 + 1e-9))
+    touching = 0.065 * math.sin(math.pi / 13)
+    near = replace(BEARING, ball_diameter=touching * (1 - 1e-9))
+    assert near.ball_gap == pytest.approx(touching * 1e-9, rel=1e-6)  # cancellation
+    with pytest.raises(InputError, match="at most 12"):
+        replace(BEARING, ball_diameter=touching * (1 + 1e-9))
 
 
 def test_the_paper_like_example_has_the_numbers_of_its_class():
@@ -104,9 +77,8 @@ def test_the_examples_of_the_literature_have_their_printed_numbers():
     assert le7.ranking is None
 
 
-def test_a_file_comes_before_a_shipped_study_of_its_name_and_a_folder_does_not(tmp_path, monkeypatch):
+def test_a_file_comes_before_a_shipped_study_of_its_name_and_a_folder_does_not(elsewhere, tmp_path):
     """What lies on the disk is meant, but the default output folder has the name of the study."""
-    monkeypatch.chdir(tmp_path)
     written(tmp_path, BASE, "ball-218")
     (tmp_path / "le7").mkdir()
     assert (read_study("le7").name, read_study("ball-218").title) == ("le7", "A valid study")
@@ -194,29 +166,6 @@ def test_another_form_of_a_study_is_read(old, new, holds, read):
     assert holds(read(BASE.replace(old, new)))
 
 
-def test_candidates_in_place_keep_their_gaps_and_their_scatter(read):
-    """An environment where one was not measured is None, never 0."""
-    given = read(
-        BASE
-        + """
-[[ranking.candidates]]
-name = "Mine"
-friction = { "air" = 0.11, "liquid nitrogen, 440C" = { mean = 0.12, standard_deviation = 0.02, count = 8 } }
-material = { elastic_modulus = "5 GPa", poisson_ratio = 0.4 }
-[[ranking.candidates]]
-name = "Armalon"
-friction = { "air" = 0.07 }
-material = "Armalon"
-"""
-    )
-    mine, armalon = given.ranking.candidates
-    assert given.ranking.environments == ("air", "liquid nitrogen, 440C")
-    assert mine.friction["liquid nitrogen, 440C"] == Friction(mean=0.12, standard_deviation=0.02, count=8)
-    assert mine.material.elastic_modulus == 5e9
-    assert armalon.friction == {"air": Friction(mean=0.07), "liquid nitrogen, 440C": None}
-    assert armalon.material.source.startswith("Composition")
-
-
 VARIANTS = [
     (
         '[operation]\naxial_load = "2 kN"',
@@ -248,18 +197,6 @@ def test_a_variant_overrides_its_base_key_by_key(base, text, holds, tmp_path, re
     assert variant.bearing.ball_count == (11 if base.startswith("sub") else 13)
 
 
-def test_a_variant_of_a_shipped_study_needs_no_path(read):
-    """The candidates in place replace the table of the base, and the origins name both files."""
-    text = (
-        'extends = "cryogenic-turbopump"\n[[ranking.candidates]]\nname = "Mine"\nfriction = { "air" = 0.1 }\n'
-    )
-    variant = read(text)
-    assert [c.name for c in variant.ranking.candidates] == ["Mine"]
-    assert variant.origins["bearing.bore"] == 'cryogenic-turbopump.toml, line 13: "50 mm"'
-    assert variant.origins["ranking.candidates"] == "case.toml, line 2"
-    assert variant.title == "Cryogenic turbopump bearing in liquid nitrogen, seven cage materials"
-
-
 def test_resolved_inputs_are_plain_and_say_where_each_number_comes_from():
     """JSON without NaN; SI with units; origins, defaults, sources and confidences; the same when pickled."""
     example = read_study("cryogenic-turbopump")
@@ -288,10 +225,46 @@ def test_resolved_inputs_are_plain_and_say_where_each_number_comes_from():
 
 def test_a_study_built_in_python_resolves_too():
     """Nothing is known of where its numbers come from, and that is said."""
-    inputs = resolved(study())
+    operation = Operation(inner_speed=1000.0, axial_load=1000.0)
+    bare = Study(name="a", title="A", bearing=BEARING, operation=operation, film=Film(race_friction=0.1))
+    inputs = resolved(bare)
     assert inputs["bearing"]["ball_diameter"]["origin"] == "given in Python"
     assert inputs["cage"] is None
     assert inputs["film"]["is_bare"] is True
+
+
+BAND = '[film.wear]\nwidth = "0.2 mm"\nfriction = 0.3\n'
+SHARE = '[film.wear]\nshare = 0.1\nthickness = "50 nm"\nfriction = 0.3\nraces = "Inner race"\n'
+PLACES = '[film.wear]\nacross = ["-0.1 mm", "0.1 mm"]\nthicknesses = ["0 um", "0.2 um"]\nfriction = 0.3\n'
+WORN = [
+    (BAND, Wear(width=2e-4, friction=0.3)),
+    (SHARE, Wear(share=0.1, thickness=5e-8, friction=0.3, races=Worn.INNER)),
+    (PLACES, Wear(across=(-1e-4, 1e-4), thicknesses=(0.0, 2e-7), friction=0.3)),
+]
+
+
+@pytest.mark.parametrize(("section", "wear"), WORN)
+def test_each_form_of_wear_is_read(section, wear, read):
+    """In SI, with the origin of each key."""
+    study = read(BASE + section)
+    assert study.film.wear == wear
+    found = resolved(study)["film"]
+    assert found["wear.races"]["value"] == wear.races.value
+    assert found["wear.friction"]["value"] == 0.3
+    assert found["wear.friction"]["origin"].startswith("case.toml, line ")
+
+
+def test_numbers_of_wear_may_be_uncertain_and_varied(read):
+    """By the name film.wear.width."""
+    study = read(BASE + BAND.replace('"0.2 mm"', '"0.2 mm +- 10 %"'))
+    assert study.distributions["film.wear.width"].mean == pytest.approx(2e-4)
+    for change in (with_values, varied):
+        assert change(study, {"film.wear.width": 3e-4}).film.wear.width == 3e-4
+    assert value_in(study, "film.wear.width") == pytest.approx(2e-4)
+    whole = read(BASE)
+    assert value_in(whole, "film.wear.width") is None
+    with pytest.raises(InputError, match=r"\[film\] has no wear that could vary"):
+        varied(whole, {"film.wear.share": 0.1})
 
 
 def test_the_page_on_study_files_is_complete_and_its_examples_are_right(read):

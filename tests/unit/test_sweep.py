@@ -28,12 +28,6 @@ CASES = [
 pytestmark = pytest.mark.usefixtures("elsewhere")
 
 
-@pytest.fixture
-def elsewhere(tmp_path, monkeypatch):
-    """An empty folder."""
-    monkeypatch.chdir(tmp_path)
-
-
 def test_a_case_is_the_study_with_those_values():
     """The chain of each case to the last bit, in the order of the cases, for any number of threads."""
     found = sweep(STUDY, CASES)

@@ -1,63 +1,217 @@
-"""The verb `tribometer` as a function of Python."""
+"""The verb `tribometer`, as a user runs it and as a function: logs, a column map, a friction file."""
 
 import json
+import os
+import shlex
+import signal
+import subprocess
+import sys
 
 import numpy as np
 import pytest
-from commands import column_map
+from commands import column_map, log, read_friction, wait_until
+from test_reference_tables import missing
 
 import separatrix
 from separatrix.front import main
 from separatrix.ground.errors import InputError
+from separatrix.verbs.tribometer import file_name
 
-MAP = {"test": {"material": "Armalon", "counterface": "440C", "medium": "air"}}
+MAP = """
+[test]
+material = "Armalon"
+counterface = "440C"
+medium = "liquid nitrogen"
+temperature = "77 K"
+slip_speed = "2 m/s"
+pin_diameter = "5 mm"
+[files."b.csv"]
+slip_speed = "4 m/s"
+"""
+
+
+BOTH = ["tribometer", "a.csv", "b.csv", "--map", "map.toml"]
+
+
+@pytest.fixture
+def logs(elsewhere, tmp_path):
+    """Two logs and a column map, in the current folder."""
+    log(tmp_path / "a.csv", 0.08, 1)
+    log(tmp_path / "b.csv", 0.09, 2)
+    (tmp_path / "map.toml").write_text(MAP)
+    return tmp_path
+
+
+def names(folder):
+    """Names of all files below a folder."""
+    return sorted(str(p.relative_to(folder)) for p in folder.rglob("*") if p.is_file())
+
+
+def test_logs_become_a_friction_file_with_a_page_for_each(logs, capsys):
+    """Text, exit status, files; the tests are those of the logs under the conditions of the map."""
+    assert main([*BOTH, "--out", "friction.toml"]) == 0
+    text = capsys.readouterr().out
+    assert "friction.toml" in text
+    assert "Armalon" in text
+    plots = [f"friction-plots/{n}.csv.{s}" for n in "ab" for s in ("png", "svg")]
+    assert names(logs) == sorted(["a.csv", "b.csv", "map.toml", "friction.toml", *plots])
+    first, second = read_friction(logs / "friction.toml")
+    assert (first.source, first.slip_speed, second.slip_speed) == ("a.csv", (2.0, 2.0), (4.0, 4.0))
+    # 20 N on a pin of 5 mm
+    assert first.pressure[0] == pytest.approx(20.0 / (np.pi * 2.5e-3**2))
+    # the noise of 0.004 over a thousand rows leaves 0.0002; what is left of running-in is less than that
+    assert [first.friction, second.friction] == pytest.approx([0.08, 0.09], abs=1e-3)
+    assert first.standard_error < 1e-3
+    assert first.reduced_by.startswith("separatrix ")
+
+
+def test_python_and_json_answer_alike_and_nothing_is_written(logs, capsys):
+    """The same numbers, tests as a friction file keeps them, progress up to its total; no new file."""
+    before, steps = names(logs), []
+    found = separatrix.tribometer(
+        ["a.csv", "b.csv"], column_map="map.toml", progress=lambda *at: steps.append(at)
+    )
+    assert main(BOTH) == 0
+    assert capsys.readouterr().out == found.summary()
+    assert main([*BOTH, "--json"]) == 0
+    document = json.loads(capsys.readouterr().out)
+    assert document == found.document()
+    assert [file["source"] for file in document["files"]] == ["a.csv", "b.csv"]
+    assert document["tests"][0]["friction_low"] < 0.08 < document["tests"][0]["friction_high"]
+    assert document["fits"][0]["scatter_source"] == "its own tests, drawn towards the assumed 9 %"
+    assert document["friction_file"] is None
+    assert missing("tribometer", document) == set()
+    assert (names(logs), steps[-1]) == (before, (1000, 1000))
+    assert [test.friction for test in found.friction_tests] == [test.friction for test in found.tests]
+    assert found.fit.of("Armalon", "liquid nitrogen, 440C").at().mean == pytest.approx(0.085, abs=1e-3)
+
+
+def test_logs_that_do_not_say_what_slid_on_what_are_shown_but_not_written(logs, capsys):
+    """Without a map: a table without materials; with --out a refusal that says where to say it."""
+    assert main(["tribometer", "a.csv"]) == 0
+    assert "steady friction" in capsys.readouterr().out
+    assert main(["tribometer", "a.csv", "b.csv", "--out", "friction.toml"]) == 2
+    line = capsys.readouterr().err
+    assert line.startswith("separatrix: a.csv does not state: material, counterface, medium.")
+    assert line.endswith("--map map.toml. 1 other file is refused too.\n")
+    assert names(logs) == ["a.csv", "b.csv", "map.toml"]
+
+
+WRONG = {  # what follows the verb, and the words of the line
+    "no such file": ("nofile.csv", "nofile.csv cannot be read"),
+    "a folder without logs": ("more2", "more2 is a folder without a log"),
+    "a folder for a map": ("a.csv --map .", ": . is a folder"),
+    "the same file twice": ("a.csv ./a.csv", "a.csv is named twice"),
+    "a copy of a file": ("a.csv copy.csv", "copy.csv has the same content as a.csv"),
+    "a copy of the same name": ("a.csv more/a.csv", "more/a.csv has the same content as a.csv"),
+    "a copy with a comma": ("x,1.csv x,2.csv", "x,2.csv has the same content as x,1.csv"),
+    "no such map": ("a.csv --map no.toml", "no.toml cannot be read: no such file"),
+    "a wrong map": ("a.csv --map wrong.toml", "wrong.toml, line 2: [test] materal"),
+    "two wrong of three": ("x.csv a.csv y.csv", "1 other file is refused too"),
+    "out exists": ("a.csv --map map.toml --out map.toml", "map.toml exists already"),
+    "out exists, whatever the logs": ("no.csv --map no.toml --out map.toml", "map.toml exists"),
+    "out is no toml": ("a.csv --out friction.csv", "--out must name a file that ends in .toml"),
+    "out is empty": ("a.csv --out ''", "--out needs the name of a file"),
+    "a name too long": (f"a.csv --out {'x' * 300}/f.toml", "(the folder: File name too long)"),
+    "a log of a name too long": ("x" * 300, "cannot be read: file name too long"),
+    "out in a file": ("a.csv b.csv --map map.toml --out a.csv/f.toml", "cannot be written"),
+    "running-in in newtons": ("a.csv --run-in '5 N'", "--run-in must be a time"),
+    "running-in beyond": ("a.csv --run-in '5 h'", "a.csv: the end of running-in must lie before"),
+    "running-in in cycles": ("a.csv --run-in '5 cycles'", "needs a column of cycles"),
+}
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_a_wrong_call_is_one_line_and_writes_nothing(logs, capsys, name):
+    """Exit status 2, one line on standard error, nothing on standard output, no new file."""
+    arguments, words = WRONG[name]
+    (logs / "more").mkdir()
+    (logs / "more2").mkdir()
+    for copy in ("copy.csv", "more/a.csv", "x,1.csv", "x,2.csv"):
+        (logs / copy).write_bytes((logs / "a.csv").read_bytes())
+    (logs / "wrong.toml").write_text('[test]\nmateral = "X"\n')
+    for wrong in ("x.csv", "y.csv"):
+        (logs / wrong).write_text("nothing,of,interest\n")
+    before = {path: (logs / path).read_bytes() for path in names(logs)}
+    assert main(["tribometer", *shlex.split(arguments)]) == 2
+    out, line = capsys.readouterr()
+    assert out == ""
+    assert line.startswith("separatrix: ")
+    assert line.count("\n") == 1
+    assert words in line
+    assert {path: (logs / path).read_bytes() for path in names(logs)} == before
+
+
+def test_an_interrupt_leaves_no_friction_file(logs):
+    """Ctrl-C while many logs are read: one line, status 130, nothing half written."""
+    for i in range(60):
+        log(logs / f"c{i}.csv", 0.1, i, rows=3000)
+    files = ["b.csv", *(f"c{i}.csv" for i in range(60))]
+    call = [sys.executable, "-m", "separatrix", "tribometer", *files, "--map", "map.toml", "--out", "f.toml"]
+    process = subprocess.Popen(call, cwd=logs, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    wait_until((logs / "f-plots").exists)  # the folders are made before the first log is read
+    os.kill(process.pid, signal.SIGINT)
+    out, error = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert out == ""
+    assert error == "separatrix: interrupted; no friction file was written.\n"
+    assert not (logs / "f.toml").exists()
+    assert not (logs / "f-plots").exists()
+
+
+def test_names_of_pages_are_names_of_files():
+    """Whatever stands in the name of a log, its page stays in its folder."""
+    assert file_name("../a b.xlsx, sheet 1") == "a-b.xlsx-sheet-1"
+    assert file_name("...") == "test"
+
+
+@pytest.mark.parametrize("more", [[], ["--json"]], ids=["text", "json"])
+def test_a_pattern_that_fits_no_file_is_said_and_with_out_refused(logs, capsys, more):
+    """Mistyped, it would lose a sample in silence; who looks at one log of many is only told."""
+    (logs / "map.toml").write_text(f'{MAP}[files."zzz*.csv"]\nsample = "S1"\n')
+    rule = 'map.toml: [files."zzz*.csv"] must fit a file that is named; got a.csv, b.csv.'
+    command = [*BOTH, *more]
+    assert main(command) == 0
+    said = capsys.readouterr().out
+    notes = json.loads(said)["notes"] if more else [" ".join(said.split())]
+    assert rule in notes[0]
+    assert len(notes) == 1
+    (logs / "a.csv").write_text("no log")  # the map is refused before any log is read
+    assert main([*command, "--out", "friction.toml"]) == 2
+    line = f"separatrix: {rule} Mend it, or leave it out of this column map.\n"
+    assert capsys.readouterr().err == line
+    assert names(logs) == ["a.csv", "b.csv", "map.toml"]
+
+
+def test_a_pattern_that_fits_one_of_the_files_is_not_complained_of(logs, capsys):
+    """By its name or by its folder too; one that fits none of many names three of them."""
+    assert main([*BOTH, "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["notes"] == []
+    chosen = column_map({"files": {"one/*.csv": {"sample": "A"}, "x*": {"sample": "B"}}}, "map.toml")
+    (wrong,) = chosen.unused([logs / "one" / f"{n}.csv" for n in range(5)])
+    assert 'map.toml: [files."x*"] must fit a file that is named; got 0.csv, 1.csv, 2.csv and 2' in str(wrong)
 
 
 @pytest.fixture
 def folder(tmp_path):
     """A folder with two logs and a note."""
-    for name, friction in (("a2.csv", 0.1), ("a10.csv", 0.12)):
-        noise = np.random.default_rng(len(name)).normal(friction, 0.004, 400)
-        rows = (f"{0.5 * i},{value:.5f}" for i, value in enumerate(noise))
-        (tmp_path / name).write_text("\n".join(["time [s],COF", *rows]))
+    log(tmp_path / "a2.csv", rows=400)
+    log(tmp_path / "a10.csv", 0.12, rows=400)
     (tmp_path / "notes.md").write_text("none")
     return tmp_path
 
 
-def test_it_returns_what_the_command_prints(folder, capsys):
-    """The same numbers, tests in the order of the numbers in their names, progress up to its total."""
-    steps = []
-    found = separatrix.tribometer(folder, progress=lambda done, total: steps.append((done, total)))
-    assert main(["tribometer", str(folder)]) == 0
-    assert capsys.readouterr().out == found.summary()
-    assert main(["tribometer", str(folder), "--json"]) == 0
-    document = json.loads(capsys.readouterr().out)
-    assert document == found.document()
-    printed = document["tests"]
-    assert [test.source for test in found.tests] == ["a2.csv", "a10.csv"]
-    assert [test.friction for test in found.tests] == [test["friction"] for test in printed]
-    assert [log.rows for log in found.logs] == [400, 400]
-    assert steps[-1] == (1000, 1000)
-    assert found.friction_tests is None
-    assert found.fit is None
-
-
-def test_with_a_column_map_it_fits_and_takes_the_end_of_running_in(folder):
-    """One path or several; a map as an object; the tests as a friction file keeps them."""
-    found = separatrix.tribometer([folder / "a2.csv"], column_map=column_map(MAP), run_in="60 s")
-    (test,) = found.friction_tests
-    assert (test.material, test.environment, test.run_in_end.value) == ("Armalon", "air, 440C", 60.0)
-    assert found.fit.of("Armalon", "air, 440C").at().mean == pytest.approx(test.friction)
-
-
 def test_logs_of_one_name_in_two_folders_are_two_tests_each_with_its_own_conditions(folder):
-    """The end of running-in that the map states for one of them is not that of the other."""
+    """The end of running-in that the map states for one is not that of the other; the call goes before it."""
     for place, name in (("one", "a2.csv"), ("two", "a10.csv")):
         (folder / place).mkdir()
         (folder / name).rename(folder / place / "a.csv")
     stated = column_map({"files": {"one/*.csv": {"run_in_end": "60 s"}}})
-    first, second = separatrix.tribometer([folder / "one", folder / "two"], column_map=stated).tests
+    logs = [folder / "one", folder / "two"]
+    first, second = separatrix.tribometer(logs, column_map=stated).tests
     assert (first.run_in_method, second.run_in_method == "given") == ("given", False)
+    found = separatrix.tribometer(logs, column_map=stated, run_in="90 s").tests
+    assert [test.run_in_end for test in found] == [90.0, 90.0]
 
 
 def test_the_speed_of_a_turning_disk_is_that_of_the_steady_part(tmp_path):
@@ -70,29 +224,26 @@ def test_the_speed_of_a_turning_disk_is_that_of_the_steady_part(tmp_path):
 
 
 def test_its_tables_and_pages_are_those_of_a_test(folder):
-    """One row for each test; the series and the page of a test by its source; another source is refused."""
+    """One row for each test, in the order of the numbers in their names; its picture by its source."""
     found = separatrix.tribometer(folder)
     table = found.to_dataframe()
     assert [*table["source"]] == ["a2.csv", "a10.csv"]
     assert [*table["friction"]] == [test.friction for test in found.tests]
     assert "a10.csv" in found.plot("a10.csv").get_suptitle()
-    with pytest.raises(InputError, match=r"no picture a3\.csv"):
-        found.plot("a3.csv")
 
 
 @pytest.mark.parametrize(
-    ("friction", "medium", "words"),
+    ("friction", "words"),
     [
-        (0.0, "air", "friction must be > 0; got 0. Its friction is zero in every row used: check"),
-        (3.0, "air", "friction must be <= 2; got 3. If a force was read as friction, map it as tangential"),
-        (0.1, "air, dry", 'medium must not hold a comma; got "air, dry". An environment is named'),
+        (0.0, "friction must be > 0; got 0. Its friction is zero in every row used: check"),
+        (3.0, "friction must be <= 2; got 3. If a force was read as friction, map it as tangential"),
     ],
 )
-def test_a_test_that_a_friction_file_cannot_keep_is_refused_by_its_log(tmp_path, friction, medium, words):
+def test_a_test_that_a_friction_file_cannot_keep_is_refused_by_its_log(tmp_path, friction, words):
     """One line with the log's name, the rule, the value and the cure; no name of a class."""
     rows = "".join(f"{i},{friction}\n" for i in range(100))
     (tmp_path / "a.csv").write_text(f"time [s],COF\n{rows}")
-    stated = column_map({"test": MAP["test"] | {"medium": medium}})
+    stated = column_map({"test": {"material": "Armalon", "counterface": "440C", "medium": "air"}})
     with pytest.raises(InputError) as caught:
         separatrix.tribometer(tmp_path / "a.csv", column_map=stated, complete=True)
     line = str(caught.value)

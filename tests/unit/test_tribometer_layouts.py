@@ -1,17 +1,21 @@
-"""Logs as instruments write them: small files of the same layout, read without a word from the user."""
+"""Logs as instruments write them, read at once where all is clear; others through their draft."""
 
 from __future__ import annotations
 
+import json
+import re
 from datetime import datetime, timedelta
 
 import numpy as np
+import openpyxl
 import pytest
 from commands import column_map, document, refused, written
 
-from separatrix.friction.logs import read_log
+from separatrix.friction.logs import UnmappedError, read_column_map, read_log
 from separatrix.friction.logs.log import seconds
 from separatrix.friction.logs.tables import is_clock, is_number
 from separatrix.friction.reduction import reduce_log
+from separatrix.front import main
 from separatrix.ground.errors import InputError
 
 ROWS = 240
@@ -94,14 +98,6 @@ def test_labview_text_is_read_at_once_and_a_copy_of_a_table_counts_once(tmp_path
     assert any("has 6 rows: too few to see running-in" in flag for flag in test.flags)
 
 
-def test_rtec_without_step_and_brackets_is_read_at_once(tmp_path):
-    """``Timestamp,DAQ.COF,Rotary.Position``: the timestamp is in seconds."""
-    rows = "".join(f"{0.1 * i:.1f},{STEADY + NOISE[i]:.5f},{0.02 * i % 1.0:.3f}\n" for i in range(ROWS))
-    (log,) = read(tmp_path, f"Timestamp,DAQ.COF,Rotary.Position\n{rows}")
-    assert log.rows == ROWS
-    assert log.time[-1] == pytest.approx(23.9)
-
-
 @pytest.mark.parametrize(
     ("first", "second", "gap", "form"),
     [
@@ -125,6 +121,7 @@ def test_times_as_text_become_seconds(first, second, gap, form):
         ("datetime,friction_coefficient", "2026-03-31T23:59:{0:02d}.500,0.1{0:02d}"),
         ("Date;Time;COF", "31.03.2026;10:00:{0:02d};0,1{0:02d}"),
         ("Elapsed [mm:ss];mu", "01:{0:02d};0,1{0:02d}"),
+        ("Timestamp,DAQ.COF,Rotary.Position", "{0}.0,0.1{0:02d},0.{0:02d}"),
         ("# time(s) friction(mu) load(N)", "{0} 0.1{0:02d} 5.0"),
         ("Time [s];\u00c2\u00b5", "{0};0,1{0:02d}"),
     ],
@@ -204,9 +201,8 @@ def test_a_position_with_too_few_rows_for_reversals_is_reported(tmp_path):
 
 
 @pytest.fixture
-def strokes(tmp_path, monkeypatch):
+def strokes(elsewhere, tmp_path):
     """A folder of six files of strokes."""
-    monkeypatch.chdir(tmp_path)
     (tmp_path / "wear").mkdir()
     for number in range(1, 7):
         (tmp_path / "wear" / f"disk-{number}.csv").write_text(umt(number))
@@ -214,18 +210,13 @@ def strokes(tmp_path, monkeypatch):
     return tmp_path
 
 
-def test_strokes_of_one_test_are_joined_by_their_header(strokes, capsys):
-    """Twelve strokes in six files of a folder are one test, of the mean of both directions."""
-    (test,) = document(capsys, "tribometer", "wear")["tests"]
-    assert test["source"] == "disk-1.csv, run 1, step 2 and 11 more"
-    assert test["friction"] == pytest.approx(0.8, abs=0.01)
-    assert test["cycles"] == 6
-
-
-def test_strokes_of_one_file_are_one_test(strokes, capsys):
-    """As those of several files are."""
-    (test,) = document(capsys, "tribometer", "wear/disk-1.csv")["tests"]
+@pytest.mark.parametrize(("logs", "more", "cycles"), [("wear", 11, 6), ("wear/disk-1.csv", 1, 0)])
+def test_strokes_of_one_test_are_joined_by_their_header(strokes, capsys, logs, more, cycles):
+    """Twelve strokes in six files of a folder, or two of one file, are one test: the mean of both ways."""
+    (test,) = document(capsys, "tribometer", logs)["tests"]
+    assert test["source"] == f"disk-1.csv, run 1, step 2 and {more} more"
     assert test["friction"] == pytest.approx(0.8, abs=0.02)
+    assert test["cycles"] == cycles
 
 
 def test_parts_under_other_loads_are_not_one_test(strokes, capsys):
@@ -236,9 +227,8 @@ def test_parts_under_other_loads_are_not_one_test(strokes, capsys):
     assert "cannot be one test: their normal force differs" in line
 
 
-def test_a_test_far_from_its_siblings_is_flagged(tmp_path, monkeypatch, capsys):
+def test_a_test_far_from_its_siblings_is_flagged(elsewhere, tmp_path, capsys):
     """0.4 among five of 0.12: three times the median of the others; the others draw no flag."""
-    monkeypatch.chdir(tmp_path)
     for number, level in enumerate([0.12, 0.125, 0.118, 0.4, 0.121]):
         rows = "".join(f"{i},{level + NOISE[i]:.5f}\n" for i in range(ROWS))
         (tmp_path / f"{number}.csv").write_text(f"time [s],COF\n{rows}")
@@ -263,3 +253,118 @@ def test_neither_many_digits_nor_many_tables_take_long(tmp_path):
     one = "time [s],COF\n0,0.1\n1,0.1\n2,0.1\n"
     with pytest.raises(InputError, match="has more than 2000 tables"):
         read(tmp_path, one * 2100)
+
+
+# --- layouts that no map knows -------------------------------------------------------------------
+TIME = np.arange(120) * 0.5
+FRICTION = np.round(0.14 + 0.01 * np.sin(TIME), 5)
+
+
+def table(head, row):
+    """Names, and a row for each time t, friction f, force and time of day h."""
+    rows = []
+    for i, (t, f) in enumerate(zip(TIME, FRICTION, strict=True)):
+        rows.append(row.format(t=t, f=f, h=f"10:{i // 60:02d}:{i % 60:02d}", force=12.5 * f))
+    return "\n".join([*head, *rows, ""])
+
+
+SECOND = {
+    "names without units": table(["Time\tCOF\tLoad"], "{t}\t{f}\t12.5"),
+    "two coefficients": table(["t [s];COF;mu"], "{t};{f};0.3"),
+}
+EDITED = {
+    "no load in the file": (table(["t [s];Ff [N]"], "{t};{force}"), {'"... N"': '"12.5 N"'}),
+    "a time in ticks": (table(["time [ticks];COF"], "{t};{f}"), {'unit = "..."': 'unit = "s"'}),
+    "no names": (
+        table([], "{t};{f}"),
+        {
+            'friction = { name = 1, unit = "..." }': 'friction = { name = 2, unit = "-" }',
+            'time = { name = 1, unit = "..." }': 'time = { name = 1, unit = "s" }',
+        },
+    ),
+    "dates that may be American": (
+        table(["Date and Time;COF"], "03/04/2026 {h};{f}"),
+        {'unit = "..."': 'unit = "%d/%m/%Y %H:%M:%S"'},
+    ),
+}
+
+
+def draft_of(path, given=None, words="open question"):
+    """The column map of the draft of a log that is not read at once, in a file."""
+    with pytest.raises(UnmappedError, match=words) as refusal:
+        read_log(path, given)
+    draft = path.with_name("map.toml")
+    draft.write_text(refusal.value.draft, encoding="utf-8")
+    return draft
+
+
+@pytest.mark.parametrize("what", SECOND)
+def test_the_draft_as_written_reads_the_log(tmp_path, what):
+    """Every guess is marked; the second call works."""
+    path = written(tmp_path, SECOND[what], "log.txt")
+    draft = draft_of(path)
+    assert draft.read_text("utf-8").count("# guess, check: ") >= 1
+    (log,) = read_log(path, read_column_map(draft))
+    np.testing.assert_array_equal(log.friction, FRICTION)
+    assert np.diff(log.time).max() == pytest.approx(np.diff(log.time).min())
+
+
+@pytest.mark.parametrize("what", EDITED)
+def test_what_no_file_states_is_left_open_in_the_draft(tmp_path, what):
+    """The draft as written is refused; with the one thing that it asks for, the log is read."""
+    text, edits = EDITED[what]
+    path = written(tmp_path, text, "log.txt")
+    draft = draft_of(path)
+    with pytest.raises(InputError, match=re.escape("...")):
+        read_log(path, read_column_map(draft))
+    edited = draft.read_text("utf-8")
+    for asked, answer in edits.items():
+        assert asked in edited
+        edited = edited.replace(asked, answer)
+    draft.write_text(edited, "utf-8")
+    (log,) = read_log(path, read_column_map(draft))
+    np.testing.assert_allclose(log.friction, FRICTION, rtol=1e-12)  # one or two roundings of the forces
+
+
+@pytest.mark.parametrize("key", ["skip", "ends"])
+def test_a_broken_table_is_read_with_what_its_refusal_offers(tmp_path, key):
+    """A remark among the rows is skipped; another table behind the first is the end of it."""
+    text = table(["t [s];COF"], "{t};{f}")
+    other = "\nSummary\nLoad [N];Mean\n5;0.12\n6;0.13\n"
+    text = text.replace("\n30.0;", "\npump off\n30.0;") if key == "skip" else text + other
+    path = written(tmp_path, text, "log.txt")
+    with pytest.raises(InputError, match="breaks the table") as refusal:
+        read_log(path)
+    offered = re.search(r"skip = (\[.*\])", str(refusal.value))[1]
+    (log,) = read_log(path, column_map({"format": {key: json.loads(offered)}}))
+    np.testing.assert_array_equal(log.friction, FRICTION)
+
+
+def test_the_command_writes_the_draft_and_keeps_what_is_stated(elsewhere, tmp_path, capsys):
+    """Conditions of the map given are in the draft; one that was edited is not written over."""
+    path = written(tmp_path, SECOND["names without units"], "log.txt")
+    (tmp_path / "map.toml").write_text('[test]\nmaterial = "Armalon"\n\n[files."*.txt"]\nsample = "B3"\n')
+    assert main(["tribometer", "log.txt", "--map", "map.toml"]) == 2
+    line = capsys.readouterr().err
+    assert "has an open question" in line
+    assert line.endswith("and add: --map log.txt.map.toml.\n")
+    draft = tmp_path / "log.txt.map.toml"
+    (log,) = read_log(path, read_column_map(draft))
+    assert (log.conditions.material, log.conditions.sample) == ("Armalon", "B3")
+    draft.write_text("# edited\n")
+    assert main(["tribometer", "log.txt"]) == 2
+    assert "There is a file log.txt.map.toml" in capsys.readouterr().err
+    assert draft.read_text() == "# edited\n"
+
+
+@pytest.mark.parametrize("cell", ["XFD1048576", "XFD20000"])
+def test_a_stray_cell_at_the_end_of_a_sheet_costs_nothing(tmp_path, cell):
+    """The sheet is read by its used cells; the cell is no row of the table."""
+    book = openpyxl.Workbook()
+    book.active.append(["Time [s]", "COF"])
+    for t, f in zip(TIME.tolist(), FRICTION.tolist(), strict=True):
+        book.active.append([t, f])
+    book.active[cell] = "x"
+    book.save(tmp_path / "log.xlsx")
+    (log,) = read_log(tmp_path / "log.xlsx")
+    np.testing.assert_array_equal(log.friction, FRICTION)

@@ -30,8 +30,7 @@ SHOWN = {  # page: blocks of output that are compared
 
 
 @pytest.fixture(autouse=True)
-def _elsewhere(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
+def _elsewhere(elsewhere, monkeypatch):
     monkeypatch.setattr(plt, "show", lambda: None)
 
 

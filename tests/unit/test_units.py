@@ -5,10 +5,8 @@ import pickle
 
 import pytest
 
-from separatrix.ground import units
 from separatrix.ground.errors import InputError
 from separatrix.ground.units import UNITS, format_number, format_quantity, parse
-from separatrix.study.study import BallBearing, CageDesign, StabilitySettings
 
 PINT_NAMES = {
     "lbf in": "lbf * inch",
@@ -124,13 +122,6 @@ def test_what_is_not_one_number_and_one_unit_is_refused(text, si, words):
     assert message.isprintable()
     assert len(message) < 250
     assert str(pickle.loads(pickle.dumps(caught.value))) == message  # noqa: S301 - our own bytes
-
-
-def test_the_unit_of_a_field_is_read_from_its_type():
-    """One place says the unit: the annotation, also of a tuple and of what may be left out."""
-    known = {(BallBearing, "bore"): "m", (BallBearing, "ball_count"): "", (CageDesign, "land_friction"): "-"}
-    known[StabilitySettings, "kicks"] = "m/s"
-    assert {field: units.unit_of(*field) for field in known} == known
 
 
 SHOWN = """

@@ -16,6 +16,7 @@ from separatrix.friction.logs.column_map import Conditions, of_log
 from separatrix.friction.logs.log import RawLog
 from separatrix.friction.logs.names import MEANINGS
 from separatrix.friction.steady import LONG, METHOD, RunIn, run_in
+from separatrix.friction.wear import NO_GROWTH, NO_WEAR, SampleWear, sample_wear
 from separatrix.ground.errors import InputError
 from separatrix.ground.units import Array, Ratio, format_number, format_quantity
 
@@ -212,6 +213,7 @@ class TestFriction:
     cycles: int  # whole cycles averaged; 0 where none are
     drift_rate: float  # change of friction per SI unit of `run_in_axis`, over the steady part
     drift_error: float  # standard error of `drift_rate`
+    wear: SampleWear = NO_WEAR  # of the sample, by the wear depth that was logged
     flags: tuple[str, ...] = ()  # what a reader has to consider, a sentence each
 
     @property
@@ -281,8 +283,16 @@ def reduction(log: RawLog, cut: Place | None = None) -> Reduction:
         spans=spans,
         mean=mean,
     )
-    sentences = (*(event.sentence for event in events), *flags(one), *notes, *more)
-    return replace(one, test=replace(one.test, flags=sentences))
+    worn = sample_wear(log, one.test.conditions, steady_rows)
+    has_none = log.wear_depth is not None and one.test.conditions.pressure and not worn.wear_coefficient
+    sentences = (
+        *(event.sentence for event in events),
+        *flags(one),
+        *notes,
+        *more,
+        *[NO_GROWTH] * bool(has_none),
+    )
+    return replace(one, test=replace(one.test, flags=sentences, wear=worn))
 
 
 def _test(

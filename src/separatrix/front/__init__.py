@@ -10,10 +10,6 @@ from typing import NoReturn
 
 __all__ = ["main", "process"]
 
-BLAS_THREADS = "OPENBLAS_NUM_THREADS"
-"""Our threads are those of --jobs; our matrices are small, and more threads in a product would only wait."""
-
-
 INTERRUPTED = 130
 """Exit status after Ctrl-C."""
 
@@ -32,7 +28,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         0 answered, 1 a fault of ours, 2 a wrong input (on standard error a line for each mistake),
         130 interrupted.
     """
-    os.environ.setdefault(BLAS_THREADS, "1")  # read when numpy is first imported, below
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # numpy reads it; our threads are those of --jobs
     try:
         from separatrix.front.cli import run_command_line
 

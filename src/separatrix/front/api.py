@@ -10,9 +10,23 @@ from typing import TYPE_CHECKING, Any, Generic, TypedDict, TypeVar, Unpack
 
 from separatrix.ground.document import Document
 from separatrix.ground.units import MetrePerSecond, Ratio
+from separatrix.present.blocks import Level, Page
+from separatrix.present.text import text
 from separatrix.study.reading import read_study
 from separatrix.study.study import Study
 from separatrix.verbs import asked_study, computed, tool_named, verb_named
+from separatrix.verbs import tribometer as logs
+from separatrix.verbs.answer_files import (
+    document,
+    notes_of,
+    page_of_document,
+    read_answer,
+    read_answers,
+    refusing_damage,
+)
+from separatrix.verbs.compare import compared
+from separatrix.verbs.materials import LIST, SHOW
+from separatrix.verbs.report import Report, report_of_study
 from separatrix.verdict.long_jobs import Interrupted, Progress
 from separatrix.verdict.parameter_axes import DEFAULT_X, DEFAULT_Y, Case
 
@@ -23,17 +37,8 @@ if TYPE_CHECKING:
 
     from separatrix.chain.contacts import BearingState
     from separatrix.friction.logs.column_map import ColumnMap
-    from separatrix.present.blocks import Page
-    from separatrix.verbs.cage_answers import (
-        LifeAnswer,
-        MapAnswer,
-        RankingAnswer,
-        SensitivityAnswer,
-        SimulationAnswer,
-        StabilityAnswer,
-    )
-    from separatrix.verbs.chain_answers import CheckAnswer, MobilityAnswer, RestitutionAnswer, TractionAnswer
-    from separatrix.verbs.report import Report
+    from separatrix.verbs import cage_answers as of_cage
+    from separatrix.verbs import chain_answers as of_chain
     from separatrix.verbs.verb import Tool, Verb
     from separatrix.verdict.swept_cases import Sweep
 
@@ -70,15 +75,10 @@ class ToolAnswer(Generic[Record]):
 
     def page(self) -> Page:
         """Page of blocks: what text, report, workbook and local page show."""
-        from separatrix.verbs.answer_files import page_of_document
-
         return page_of_document(self.asked, self.document())
 
     def summary(self, *, full: bool = False) -> str:
         """Text, as the command line prints it; `full` is all of it where that is longer than a screen."""
-        from separatrix.present.blocks import Level
-        from separatrix.present.text import text
-
         return text(self.page(), Level.FULL if full else Level.BRIEF)
 
     def _repr_html_(self) -> str:
@@ -131,8 +131,6 @@ class Answer(ToolAnswer[Record]):
     @property
     def notes(self) -> tuple[str, ...]:
         """Where a model leaves its range, a sentence each."""
-        from separatrix.verbs.answer_files import notes_of
-
         return notes_of(self.record, self.study)
 
     def to_xarray(self) -> xr.Dataset:
@@ -150,8 +148,6 @@ class Answer(ToolAnswer[Record]):
 
 def _answer(name: str, study: Asked, options: dict[str, Any] | None = None, **how: Any) -> Answer[Any]:
     """Answer of a verb; `how` is as for `computed`."""
-    from separatrix.verbs.answer_files import document
-
     verb = verb_named(name)
     asked = asked_study(verb, study)
     found = computed(verb, asked, verb.options(**(options or {})), **how)
@@ -161,7 +157,7 @@ def _answer(name: str, study: Asked, options: dict[str, Any] | None = None, **ho
     return answer
 
 
-def check(study: Asked) -> Answer[CheckAnswer]:
+def check(study: Asked) -> Answer[of_chain.CheckAnswer]:
     """Inputs of a study with their sources, and the bearing at standstill."""
     return _answer("check", study)
 
@@ -171,17 +167,17 @@ def bearing(study: Asked) -> Answer[BearingState]:
     return _answer("bearing", study)
 
 
-def traction(study: Asked) -> Answer[TractionAnswer]:
+def traction(study: Asked) -> Answer[of_chain.TractionAnswer]:
     """Traction curves of ball on race, and their slopes."""
     return _answer("traction", study)
 
 
-def restitution(study: Asked) -> Answer[RestitutionAnswer]:
+def restitution(study: Asked) -> Answer[of_chain.RestitutionAnswer]:
     """Restitution factor of an impact of ball and cage."""
     return _answer("restitution", study)
 
 
-def mobility(study: Asked) -> Answer[MobilityAnswer]:
+def mobility(study: Asked) -> Answer[of_chain.MobilityAnswer]:
     """How the races let a ball be pushed along its orbit, and what the cage's impacts return."""
     return _answer("mobility", study)
 
@@ -192,13 +188,13 @@ def simulate(
     kick: str | MetrePerSecond | None = None,
     run: int = 0,
     restitution_factor: str | Ratio | None = None,
-) -> Answer[SimulationAnswer]:
+) -> Answer[of_cage.SimulationAnswer]:
     """One run of the cage, from an initial disturbance in text with a unit or [m/s]."""
     question = {"kick": kick, "run": run, "restitution_factor": restitution_factor}
     return _answer("simulate", study, question)
 
 
-def stability(study: Asked, **how: Unpack[Runs]) -> Answer[StabilityAnswer]:
+def stability(study: Asked, **how: Unpack[Runs]) -> Answer[of_cage.StabilityAnswer]:
     """Critical friction against restitution factor.
 
     Parameters
@@ -229,18 +225,20 @@ def map(
     runs: int = 16,
     kick: str | MetrePerSecond | None = None,
     **how: Unpack[Runs],
-) -> Answer[MapAnswer]:
+) -> Answer[of_cage.MapAnswer]:
     """Where the cage is stable in the plane of two parameters: see `stability` for the rest."""
     question = {"x": x, "y": y, "points": points, "runs": runs, "kick": kick}
     return _answer("map", study, question, **how)
 
 
-def rank(study: Asked, **how: Unpack[Runs]) -> Answer[RankingAnswer]:
+def rank(study: Asked, **how: Unpack[Runs]) -> Answer[of_cage.RankingAnswer]:
     """Verdict, margin, rank and reason of each candidate material; parameters as of `stability`."""
     return _answer("rank", study, **how)
 
 
-def sensitivity(study: Asked, *, samples: int = 512, **how: Unpack[Runs]) -> Answer[SensitivityAnswer]:
+def sensitivity(
+    study: Asked, *, samples: int = 512, **how: Unpack[Runs]
+) -> Answer[of_cage.SensitivityAnswer]:
     """Verdicts over the uncertain inputs, with `samples` bearings drawn; the rest as in `stability`."""
     return _answer("sensitivity", study, {"samples": samples}, **how)
 
@@ -268,7 +266,7 @@ def life(
     cases: Path | Sequence[Case] | None = None,
     accelerated: str | float | None = None,
     **how: Unpack[Runs],
-) -> Answer[LifeAnswer]:
+) -> Answer[of_cage.LifeAnswer]:
     """When the cage becomes unstable, of `samples` bearings up to `revolutions`; the rest as `stability`.
 
     `cases` are a duty cycle, as those of `sweep`; `accelerated` is the speed of the inner ring in a test.
@@ -290,9 +288,6 @@ def compare(first: Answer[Any] | str | Path, second: Answer[Any] | str | Path) -
     InputError
         One of them is not an answer, or they are of different verbs.
     """
-    from separatrix.verbs.compare import compared
-    from separatrix.verbs.saved_answers import read_answers
-
     sides = [
         {one.verb: one.document()} if isinstance(one, Answer) else read_answers(Path(one))
         for one in (first, second)
@@ -314,7 +309,6 @@ def load(path: str | Path) -> xr.Dataset:
         The file is not an answer of separatrix, or is damaged.
     """
     from separatrix.present.dataset import dataset
-    from separatrix.verbs.saved_answers import read_answer, refusing_damage
 
     with refusing_damage(str(path)):
         return dataset(read_answer(Path(path)))
@@ -354,13 +348,11 @@ def tribometer(
     InputError
         A file is wrong: the first one, and how many others are.
     """
-    from separatrix.verbs.tribometer import Options, document, reduced
-
-    files = (paths,) if isinstance(paths, str | Path) else tuple(paths)
     given: Any = Path(column_map) if isinstance(column_map, str) else column_map
-    options = Options(files=tuple(Path(one) for one in files), column_map=given, run_in=run_in, join=join)
-    found = reduced(options, jobs, progress, complete=complete)
-    return _of_tool(tool_named("tribometer"), document(found), found)
+    asked = tuple(Path(one) for one in ((paths,) if isinstance(paths, str | Path) else paths))
+    options = logs.Options(files=asked, column_map=given, run_in=run_in, join=join)
+    found = logs.reduced(options, jobs, progress, complete=complete)
+    return _of_tool(logs.VERB, logs.document(found), found)
 
 
 def materials(kind: str | None = None, *, libraries: Sequence[str | Path] = ()) -> ToolAnswer[Any]:
@@ -378,16 +370,12 @@ def materials(kind: str | None = None, *, libraries: Sequence[str | Path] = ()) 
     InputError
         A file is wrong or not there, or the kind is not one of these.
     """
-    from separatrix.verbs.materials import LIST
-
     options = LIST.options(kind=kind, library=tuple(str(one) for one in libraries))
     return _of_tool(LIST, LIST.compute(options))
 
 
 def material(name: str, *, kind: str | None = None, libraries: Sequence[str | Path] = ()) -> ToolAnswer[Any]:
     """Records of a name, whole."""
-    from separatrix.verbs.materials import SHOW
-
     options = SHOW.options(name=name, kind=kind, library=tuple(str(one) for one in libraries))
     return _of_tool(SHOW, SHOW.compute(options))
 
@@ -397,8 +385,6 @@ def report(study: Asked, **how: Unpack[Runs]) -> Report:
 
     Bearing, traction, restitution and rank (without [ranking]: stability) are computed for it.
     """
-    from separatrix.verbs.report import report_of_study
-
     asked = study if isinstance(study, Study) else read_study(study)
     found = report_of_study(asked, lambda verb: _answer(verb.name, asked, **how).document())
     if found is None:  # `_answer` has raised it with what was finished

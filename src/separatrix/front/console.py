@@ -39,9 +39,6 @@ FIRST_PART = 0.1
 ENOUGH: Second = 1.0
 """Work in which nothing is estimated."""
 
-COMPILATION = "about a minute"
-"""What compiling all that a ranking needs takes."""
-
 PATIENCE: Second = 1.6
 """Time that an interrupt waits for the work to end by itself, with what was finished."""
 
@@ -78,15 +75,11 @@ def breakable(
         return work()
     found: Future[Answer] = Future()
 
-    def note(_: object, error: BaseException | None, __: object) -> bool:
-        if error is not None:
-            found.set_exception(error)
-        return True
-
     def do() -> None:
-        with contextlib.ExitStack() as stack:
-            stack.push(note)
+        try:
             found.set_result(work())
+        except BaseException as error:  # noqa: BLE001 - raised again where the result is taken
+            found.set_exception(error)
 
     thread = threading.Thread(target=contextvars.copy_context().run, args=(do,), daemon=True)
     before = signal.signal(signal.SIGTERM, signal.default_int_handler)
@@ -206,15 +199,14 @@ class Life(Pace):
         """Say once that kernels are compiled, which the next command finds done."""
         if not self.compiled:
             self.compiled = True
-            complain(f"{self.title}: compiling once on this machine, {COMPILATION} in all.")
+            complain(f"{self.title}: compiling once on this machine, about a minute in all.")
 
     def line(self) -> str:
         """Return how far the work is after which time."""
         passed = in_words(time.monotonic() - self.started)
-        if not self.share:
-            return f"{self.title}: at work for {passed}"
         left = "" if self.left is None else f", about {in_words(self.left)} left"
-        return f"{self.title}: {math.floor(100.0 * self.share)} % after {passed}{left}"
+        done = f"{math.floor(100.0 * self.share)} % after" if self.share else "at work for"
+        return f"{self.title}: {done} {passed}{left}"
 
 
 @contextlib.contextmanager
@@ -233,8 +225,7 @@ def progress_bar(title: str, *, quiet: bool) -> Iterator[Life]:
 
     def show(text: str) -> None:
         with contextlib.suppress(OSError, ValueError):
-            sys.stderr.write(f"\r{text[:width]:<{width}}\r")
-            sys.stderr.flush()
+            write(sys.stderr, f"\r{text[:width]:<{width}}\r")
 
     def speak() -> None:
         while not over.wait(REDRAWN_EVERY if is_terminal else LINE_EVERY):

@@ -368,9 +368,9 @@ _READABLE: dict[str, tuple[tuple[float, str], ...]] = {
     "Pa s": ((1e-6, "uPa s"), (1e-3, "mPa s"), (1.0, "Pa s")),
     "kg m": ((1e-6, "g mm"),),
     "kg m2": ((1e-6, "kg mm2"),),
-    "m3/(N m)": ((1e-9, "mm3/(N m)"),),
     "J": ((1e-6, "uJ"), (1e-3, "mJ"), (1.0, "J")),
     "W": ((1e-6, "uW"), (1e-3, "mW"), (1.0, "W"), (1e3, "kW")),
+    "m3/(N m)": ((1e-9, "mm3/(N m)"),),
     "W/m2": ((1.0, "W/m2"), (1e3, "kW/m2")),
 }
 _SIZES = {"kN": 1e3}

@@ -63,11 +63,8 @@ def refusals(study: Study) -> Iterator[tuple[str, str]]:
     for name in VERBS:
         verb = verb_named(name)
         missing = [f"[{section}]" for section in verb.needs if getattr(study, section) is None]
-        if missing:
-            yield name, f"The study has no {' and no '.join(missing)}."
-            continue
-        for sentence in verb.refusals(study):
-            yield name, sentence
+        lacks = f"The study has no {' and no '.join(missing)}."
+        yield from ((name, sentence) for sentence in ([lacks] if missing else verb.refusals(study)))
 
 
 def asked_study(verb: Verb, study: Study | str | Path, model: str | None = None) -> Study:

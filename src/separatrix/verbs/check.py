@@ -134,15 +134,14 @@ def cage_facts(answer: Part) -> list[Any]:
         ("Pocket clearance", f"{entry_words(stated['pocket_clearance'])}: {pocket}{when}"),
         *([fact(found, "lean")] if found.lean != 0.0 else []),
         ("Land clearance", land),
-        *(clearance_facts(answer.clearances) if answer.clearances else []),
+        *clearance_facts(answer.clearances),
         ("Running clearances", answer.clearances_reason and f"not found: {answer.clearances_reason}"),
     ]
 
 
 def candidate_facts(study: Mapping[str, Any]) -> list[tuple[str, str]]:
     """Return the materials to rank, and where their frictions are known."""
-    ranking = study.get("ranking")
-    if not ranking:
+    if not (ranking := study.get("ranking")):
         return []
     known = f"{'; '.join(ranking['environments'])} (from {ranking['origin']})"
     names = ", ".join(one["name"] for one in ranking["candidates"])

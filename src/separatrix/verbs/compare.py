@@ -9,34 +9,22 @@ The same with any two 95 % intervals is the method of variance estimates recover
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import Annotated
 
+from separatrix import __version__
 from separatrix.ground.document import Document, Part, part_of
 from separatrix.ground.errors import InputError
+from separatrix.ground.plain_data import plain
 from separatrix.ground.quantity import ABSENT, Estimate, Quantity
 from separatrix.ground.toml import path_text
 from separatrix.ground.units import printable
-from separatrix.present.blocks import (
-    Block,
-    Cell,
-    Column,
-    Heading,
-    Level,
-    Note,
-    Page,
-    Table,
-    facts,
-    grouped,
-    text_column,
-)
-from separatrix.verbs.parts.answer_page import value_words
-from separatrix.verbs.parts.quantity_text import quantity
-from separatrix.verbs.parts.verdict_blocks import MARK
-from separatrix.verbs.saved_answers import (
+from separatrix.present.blocks import Cell, Column, Heading, Level, Note, Page, Table, facts, text_column
+from separatrix.verbs.answer_files import (
     AGAIN,
     VERBS,
     inputs_of_study,
@@ -44,6 +32,9 @@ from separatrix.verbs.saved_answers import (
     read_answers,
     refusing_damage,
 )
+from separatrix.verbs.parts.answer_page import value_words
+from separatrix.verbs.parts.quantity_text import ends_of, quantity
+from separatrix.verbs.parts.verdict_blocks import MARK
 from separatrix.verbs.verb import Option, Tool
 
 
@@ -166,20 +157,16 @@ def differing(first: Places, second: Places) -> Iterator[Row]:
                 yield Row(place=words, name="", first=has[0], second=has[1])
             continue
         names = dict.fromkeys([*a.values, *b.values])
-        beside = {one for name in names for one in (*_ends(name), f"{name}_error")}
+        beside = {one for name in names for one in (*ends_of(name), f"{name}_error")}
         for name in names:
             one, other = value_of(name, a), value_of(name, b)
             if name not in beside and one != other and (is_number(one.value) or one.value != other.value):
                 yield _judged(Row(place=words, name=name, unit=a.unit(name), first=one, second=other))
 
 
-def _ends(name: str) -> tuple[str, str]:
-    return quantity(name).ends or (f"{name}_low", f"{name}_high")
-
-
 def value_of(name: str, node: Part) -> Value:
     """Return a number with its interval: the one given, or that of its standard error."""
-    value, error, low, high = map(node.get, (name, f"{name}_error", *_ends(name)))
+    value, error, low, high = map(node.get, (name, f"{name}_error", *ends_of(name)))
     if not is_number(value):
         return Value(value=printable(value, 80) if isinstance(value, str) else value)
     if is_number(low) and is_number(high):
@@ -193,11 +180,11 @@ def _judged(row: Row) -> Row:
     a, b = row.first, row.second
     if not is_number(a.value) or not is_number(b.value):
         return row
+    change = Value(value=b.value - a.value)
     if a.low is None or a.high is None or b.low is None or b.high is None:
-        return replace(row, change=Value(value=b.value - a.value))
+        return replace(row, change=change)
     low, high = difference_interval((a.value, a.low, a.high), (b.value, b.low, b.high))
-    change = Value(value=b.value - a.value, low=low, high=high)
-    return replace(row, change=change, beyond_noise=not low <= 0.0 <= high)
+    return replace(row, change=replace(change, low=low, high=high), beyond_noise=not low <= 0.0 <= high)
 
 
 def order(row: Row) -> tuple[bool, bool, int, int, int, float]:
@@ -221,14 +208,11 @@ def compared(
     InputError
         They share no verb, or one is not as separatrix writes it.
     """
-    from separatrix import __version__
-    from separatrix.ground.plain_data import plain
-
     shared = [verb for verb in VERBS if verb in first and verb in second]
     if not shared:
         rule = f"must be an answer of {' or '.join(first)}, as {names[0]} is"
         raise InputError(names[1], rule, got=", ".join(second))
-    pair, places, inputs = [one[shared[0]] for one in (first, second)], [], []
+    pair, places, inputs, answers = [one[shared[0]] for one in (first, second)], [], [], []
     own, other = (one.get("environment") for one in pair)
     environment = own if own == other and isinstance(own, str) else None
     for name, one in zip(names, pair, strict=True):
@@ -237,6 +221,8 @@ def compared(
             inputs.append(inputs_of_answer(one))
         if not inputs[-1]:
             raise InputError(name, "contains a study that separatrix did not write", cure=AGAIN)
+        known = {"path": name, "title": printable(one["title"], 200), "seed": one["seed"]}
+        answers.append(known | {"complete": one.get("complete") is not False})
     rows = sorted(differing(*places), key=order)
     keys = sorted({**inputs[0], **inputs[1]})
     pairs = {key: [side.get(key, (None, None)) for side in inputs] for key in keys}
@@ -244,15 +230,7 @@ def compared(
         "separatrix_version": __version__,
         "verb": "compare",
         "of": shared[0],
-        "answers": [
-            {
-                "path": name,
-                "title": printable(one["title"], 200),
-                "seed": one["seed"],
-                "complete": one.get("complete") is not False,
-            }
-            for name, one in zip(names, pair, strict=True)
-        ],
+        "answers": answers,
         "environment": environment,
         "inputs": [
             {"key": key, "first": a[0], "second": b[0], "unit": a[1] or b[1]}
@@ -307,22 +285,19 @@ def _lead(answer: Part) -> str:
     if not answer.rows:
         return "The two answers are equal in every result."
     known = [row for row in answer.rows if row.name in DECISIONS or (row.name in MAIN and row.beyond_noise)]
-    changed = ", ".join(f"{name} ({len(each)})" for name, each in grouped(_named(known)).items())
+    counts = Counter(_words(row.name) for row in known)
+    changed = ", ".join(f"{name} ({count})" for name, count in counts.items())
     if not any(row.name in DECISIONS for row in known):
         more = f" Changed by more than counting noise: {changed}." if changed else ""
         return f"No verdict or rank changed.{more}"
     return f"Changed, numbers by more than counting noise: {changed}."
 
 
-def _named(rows: Sequence[Part]) -> Iterator[tuple[str, Part]]:
-    return ((_words(row.name), row) for row in rows)
-
-
 def _words(name: str) -> str:
     return quantity(name).label if name else "in the answer"
 
 
-def _table(title: str, rows: Sequence[Part], columns: tuple[Column, ...]) -> Iterator[Block]:
+def _table(title: str, rows: Sequence[Part], columns: tuple[Column, ...]) -> Iterator[Heading | Table]:
     """Yield a table under its title: the first rows on a screen; else all."""
     more = f"{len(rows) - ON_A_SCREEN} more differ: `--full`." if len(rows) > ON_A_SCREEN else ""
     yield Heading(title)
@@ -371,9 +346,9 @@ def _notes(answer: Part) -> Iterator[str]:
 
 VERB = Tool(
     name="compare",
-    epilog="A and B are folders of answers, their .json or .html files, of any verb with a study.",
     compute=compute,
     page=page,
+    epilog="A and B are folders of answers, their .json or .html files, of any verb with a study.",
     options=Options,
     rows="rows",
     folder="compare",

@@ -14,30 +14,25 @@ from separatrix.present.blocks import Heading, Level, Note, Page, Picture, Table
 from separatrix.present.figure import BLUE, GREEN, VERMILION, Across, Band, Figure, Panel, Trace
 from separatrix.verbs.parts.answer_page import figure, page_of
 from separatrix.verbs.parts.quantity_text import all_numbers, axis, column, fill, quantity, show
-from separatrix.verbs.parts.refused import cage_motion, refused
-from separatrix.verbs.verb import Option, Verb
+from separatrix.verbs.verb import Option, Samples, Verb
 
 if TYPE_CHECKING:
-    from separatrix.chain.solution import Solution
     from separatrix.study.study import Study
     from separatrix.verbs.cage_answers import LifeAnswer
     from separatrix.verdict.long_jobs import Runner
 
-REVOLUTIONS, LEAST, MOST = 1e9, 1e3, 1e12
-"""Up to which draws are followed."""
+REVOLUTIONS = 1e3, 1e12
+"""Least and most, up to which draws are followed."""
 
 MOST_SPEED = 1e6
-DRAWS, FEWEST, MOST_DRAWS = 4096, 64, 65_536
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Options:
     """How far bearings are followed, and how many are drawn."""
 
-    revolutions: Annotated[
-        str | float, Option("Of ring against ring, up to which bearings are followed.", "N")
-    ] = REVOLUTIONS
-    samples: Annotated[int, Option("Bearings drawn, a power of two.", "N")] = DRAWS
+    revolutions: Annotated[str | float, Option("Of the rings, up to which bearings are followed.", "N")] = 1e9
+    samples: Samples = 4096
     cases: Annotated[
         Path | Sequence[Mapping[str, float]] | None,
         Option("Duty cycle, CSV: speeds and loads in its first row, and time_share; a phase a row.", "FILE"),
@@ -59,18 +54,13 @@ def compute(study: Study, options: Options, runner: Runner) -> LifeAnswer:
     from separatrix.chain.solution import solve
     from separatrix.study.candidates import reference_candidate
     from separatrix.verbs.cage_answers import LifeAnswer
-    from separatrix.verbs.parts.cage_of_study import cage_of, extrapolation_notes
+    from separatrix.verbs.parts import cage_of_study as of
     from separatrix.verdict.life_table import life
     from separatrix.verdict.parameter_axes import asked_cases, plain_number
 
     revolutions = plain_number(str(options.revolutions), "--revolutions")
-    if not LEAST <= revolutions <= MOST:
-        rule = f"must lie between {LEAST:g} and {MOST:g}"
-        raise InputError("--revolutions", rule, got=f"{revolutions:g}")
-    samples = options.samples
-    if not FEWEST <= samples <= MOST_DRAWS or samples.bit_count() != 1:
-        rule = f"must be a power of two from {FEWEST} to {MOST_DRAWS}"
-        raise InputError("--samples", rule, got=str(samples), cure=f"Try {DRAWS}.")
+    of.refuse_outside("--revolutions", revolutions, *REVOLUTIONS)
+    of.refuse_samples(options.samples)
     speed = options.accelerated
     speed = parse(speed, "rad/s", "--accelerated") if isinstance(speed, str) else speed
     if speed is not None and not 0.0 < abs(speed) < MOST_SPEED:
@@ -78,41 +68,21 @@ def compute(study: Study, options: Options, runner: Runner) -> LifeAnswer:
     found = life(
         study,
         revolutions=revolutions,
-        draws=samples,
+        draws=options.samples,
         cases=asked_cases((), options.cases) if options.cases else (),
         accelerated=speed,
         runner=runner,
     )
     solution = solve(study, reference_candidate(study, study.ranking) if study.ranking else None)
-    notes = (*found.notes, *extrapolation_notes(solution))
-    return LifeAnswer(solution=solution, cage=cage_of(solution), life=found, notes=notes)
-
-
-def refusals(study: Study) -> Iterator[str]:
-    """Yield why there is no life of a study that states how it wears; of another none is asked."""
-    if study.wear is not None and study.cage is not None:
-        yield from refused(study, cage_motion, known_wear)
-
-
-def known_wear(solution: Solution) -> None:
-    """Refuse a film or a cage whose wear neither the study nor the library has."""
-    from separatrix.study.candidates import reference_candidate
-    from separatrix.verdict.life_table import wear_rates
-
-    study = solution.study
-    candidate = reference_candidate(study, study.ranking) if study.ranking else None
-    if study.wear is not None:
-        wear_rates(study, study.wear, candidate)
+    notes = (*found.notes, *of.extrapolation_notes(solution))
+    return LifeAnswer(solution=solution, cage=of.cage_of(solution), life=found, notes=notes)
 
 
 def page(answer: Part) -> Page:
     """Return the page of `life`."""
     rows = [one for place, one in enumerate(answer.course) if place % SHOWN == 0]
     columns = tuple(map(column, COURSE))
-    drivers = (
-        text_column("input", lambda row: row.name),
-        column("correlation"),
-    )
+    drivers = (text_column("input", lambda row: row.name), column("correlation"))
     return page_of(
         answer,
         Note(" ".join([*lead(answer), *why(answer), *again(answer), *faster(answer)]), "lead"),
@@ -130,6 +100,7 @@ def page(answer: Part) -> Page:
             ("Never unstable", fill(answer, "{never_unstable}, up to {horizon} revolutions")),
             ("Reservoir empty at the end", show(answer, "reservoir_empty")),
             ("Deposit keeps half of the film", show(answer, "film_sustained")),
+            ("Coverage where deposit balances wear", fill(answer, FIXED)),
             level=Level.LONG,
         ),
         all_numbers("all times", (), ((row,) for row in answer.course)),
@@ -150,6 +121,7 @@ CAPTION = (
     "P(stable) against revolutions: mean of the drawn bearings, and the range between a tenth and nine in "
     "ten of them; beside it the median film on both tracks."
 )
+FIXED = "{coverage_calm} while the cage is calm, {coverage_whirling} while it whirls (median of the draws)"
 DRIVEN = (
     "Rank correlation of each drawn input with the life; the first is what a measurement narrows most. "
     "Negative: more of it, a shorter life."
@@ -253,13 +225,13 @@ def life_figure(answer: Part) -> Figure:
 
 VERB = Verb(
     name="life",
-    epilog="Needs [wear]: the wear coefficients of film and cage. A coefficient without a distribution "
-    "scatters by a factor of ten either way.",
     compute=compute,
     page=page,
+    epilog="Needs [wear]; wear coefficients of film and cage that it lacks are those of the library. A "
+    "coefficient without a distribution or a range scatters by a factor of ten either way.",
     options=Options,
     needs=("cage",),
     moves_a_cage=True,
     keeps_runs=True,
-    refusals=refusals,
+    links=("worn_cage",),
 )

@@ -10,21 +10,12 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from separatrix.ground.document import Document, Part
 from separatrix.ground.units import UNITS, format_number
-from separatrix.present.blocks import Column, Heading, Note, Page, Picture, Table, facts, text_column
+from separatrix.present.blocks import Column, Heading, Note, Page, Picture, Table, facts, grouped, text_column
 from separatrix.present.figure import BLACK, VERMILION, Cells, Figure, Hatched, Mark, Panel, Trace
+from separatrix.verbs.parts import quantity_text as q
 from separatrix.verbs.parts.answer_page import figure, is_chosen, page_of
-from separatrix.verbs.parts.curve_blocks import linear_law, pocket_friction
-from separatrix.verbs.parts.quantity_text import (
-    all_numbers,
-    at,
-    fill,
-    parameter_axis,
-    quantity,
-    show,
-    value_of,
-)
-from separatrix.verbs.parts.refused import cage_motion, refused
-from separatrix.verbs.verb import Option, Verb
+from separatrix.verbs.parts.verdict_blocks import linear_law, pocket_friction
+from separatrix.verbs.verb import Kick, Option, Verb
 
 if TYPE_CHECKING:
     from separatrix.study.study import Study
@@ -34,7 +25,6 @@ if TYPE_CHECKING:
 AXIS = "LOW..HIGH[unit][:N][:log]"
 X, Y = "restitution_factor=0..1", "ball_cage_friction=0..0.5"
 FRICTION, RESTITUTION, KICK = "ball_cage_friction", "restitution_factor", "kick"
-KINDS = ("STABLE", "UNSTABLE", "UNDECIDED", "refused", "not_run")
 
 SHOWN = 9
 """Most changes in the table."""
@@ -48,10 +38,7 @@ class Options:
     y: Annotated[str, Option("Vertical axis, same syntax as --x.", "AXIS")] = Y
     points: Annotated[int, Option("Points per axis, unless the axis states a number.", "N")] = 100
     runs: Annotated[int, Option("Most runs of a point.", "N")] = 16
-    kick: Annotated[
-        str | float | None,
-        Option('Initial disturbance, for instance "0.5 m/s" [default: the reference of the study].', "SPEED"),
-    ] = None
+    kick: Kick = None
 
 
 def compute(study: Study, options: Options, runner: Runner) -> MapAnswer:
@@ -60,14 +47,12 @@ def compute(study: Study, options: Options, runner: Runner) -> MapAnswer:
     from separatrix.chain.solution import solve
     from separatrix.ground.errors import InputError
     from separatrix.verbs.cage_answers import MapAnswer
-    from separatrix.verbs.parts.cage_of_study import MOST_RUNS, cage_of, extrapolation_notes, kick_speed
-    from separatrix.verdict.long_jobs import made_into
+    from separatrix.verbs.parts import cage_of_study as of
     from separatrix.verdict.parameter_axes import checked_points, read_axis
-    from separatrix.verdict.stability_map import MapQuestion, StabilityMap, stability_map, value_here
+    from separatrix.verdict.stability_map import MapQuestion, stability_map, value_here
 
     checked_points(options.points, "--points")
-    if not 1 <= options.runs <= MOST_RUNS:
-        raise InputError("--runs", f"must lie between 1 and {MOST_RUNS}", got=str(options.runs))
+    of.refuse_outside("--runs", options.runs, 1, of.MOST_RUNS)
     axes = [read_axis(text, f"--{way}", options.points) for way, text in (("x", options.x), ("y", options.y))]
     names = [axis.parameter for axis in axes]
     if names[0] == names[1]:
@@ -76,23 +61,19 @@ def compute(study: Study, options: Options, runner: Runner) -> MapAnswer:
     if options.kick is not None and KICK in names:
         raise InputError("--kick", "and an axis kick exclude each other", cure="Give one of the two.")
     solution = solve(study)
-    cage = cage_of(solution)
-    usual = settings_for(study.stability, cage).middle_kick
-    speed = usual if options.kick is None else kick_speed(options.kick)
+    usual = settings_for(study.stability, of.cage_of(solution)).middle_kick
+    speed = usual if options.kick is None else of.kick_speed(options.kick)
     across, up = (replace(axis, here=value_here(solution, axis.parameter)) for axis in axes)
     asked = MapQuestion(study=study, x=across, y=up, kick=speed, runs=options.runs)
-    notes = (*solution.notes, *cage.notes, *extrapolation_notes(solution))
-
-    def made(found: StabilityMap) -> MapAnswer:
-        every = (*notes, *(note for point in found.points for note in point.notes))
-        return MapAnswer(solution=solution, cage=cage, map=found, notes=every)
-
-    return made_into(made, lambda: stability_map(asked, runner=runner))
+    notes = of.extrapolation_notes(solution)
+    return of.answer_of_cage(MapAnswer, "map", solution, lambda: stability_map(asked, runner=runner), *notes)
 
 
 def page(answer: Part) -> Page:
     """Return the page of `map`."""
     refused = [one for one in answer.points if one.get("state") == "REFUSED"]
+    sheets = ("points", "changes") if answer.complete else ()  # else there is no workbook
+    friction = "" if FRICTION in _names(answer) else pocket_friction(answer)
     return page_of(
         answer,
         Note(" ".join(filter(None, [counted(answer), nearest_words(answer)])), "lead"),
@@ -101,16 +82,13 @@ def page(answer: Part) -> Page:
             ("Across", _axis_words(answer.x)),
             ("Upward", _axis_words(answer.y)),
             ("Runs", runs_words(answer)),
-            *([] if FRICTION in _names(answer) else [("Pocket friction", pocket_friction(answer))]),
+            ("Pocket friction", friction),
         ),
         Picture("stability-map", lambda: map_figure(answer), "Share of the runs that whirl; white: not run."),
         Heading("Where the cage begins to whirl"),
         bands(answer),
         facts(*unchanged(answer)),
-        *(
-            all_numbers(name, (), ((one,) for one in answer.get(name) or ()))
-            for name in (("points", "changes") if answer.complete else ())  # else there is no workbook
-        ),
+        *(q.all_numbers(name, (), ((one,) for one in answer.get(name) or ())) for name in sheets),
     )
 
 
@@ -147,19 +125,18 @@ def _nearest(values: Sequence[float], place: float) -> float:
 
 def counted(answer: Part) -> str:
     """Return of how many points the cage is stable, unstable, and what became of the others."""
-    counts = answer.counts
-    each = [f"{counts.get(one)} {one.replace('_', ' ')}" for one in KINDS if counts.get(one)]
+    each = [f"{n} {kind.replace('_', ' ')}" for kind, n in answer.counts.values.items() if n]
     return f"Of {len(answer.points)} points {', '.join(each)}."
 
 
 def _value(axis: Part, value: float | None) -> str:
-    return value_of(axis, axis.parameter, value).text
+    return q.value_of(axis, axis.parameter, value).text
 
 
 def _axis_words(axis: Part) -> str:
     values = axis.get("values")
     here = f"; the study has {_value(axis, axis.here)}" if "here" in axis else ""
-    ends = f"{at(axis, axis.parameter, values[0])} to {_value(axis, values[-1])}"
+    ends = f"{q.at(axis, axis.parameter, values[0])} to {_value(axis, values[-1])}"
     return f"{ends}, {len(values)} values{here}"
 
 
@@ -174,7 +151,7 @@ def nearest_words(answer: Part) -> str:
     for one in answer.get("changes") or ():
         if one.x == point.x:
             does = "begins" if one.whirls_above else "ceases"
-            ends = f"{at(y, y.parameter, one.y_low)} and {_value(y, one.y_high)}"
+            ends = f"{q.at(y, y.parameter, one.y_low)} and {_value(y, one.y_high)}"
             words += f" In this column the cage {does} to whirl between {ends}."
     return words
 
@@ -187,28 +164,29 @@ def _has_here(axis: Part) -> bool:
 
 def runs_words(answer: Part) -> str:
     """Return how many runs a point has, of which length, from which disturbance."""
-    words = fill(
+    words = q.fill(
         answer.stopping,
         "up to {most_runs}, stopped after {agreeing_runs} that agree (risk of the wrong side "
         "{wrong_side_probability}, of another decision {other_decision_probability})",
     )
-    kick = "" if KICK in _names(answer) else fill(answer, ", from an initial disturbance of {kick}")
-    return f"{words}, each of {show(answer, 'duration')}{kick}"
+    kick = "" if KICK in _names(answer) else q.fill(answer, ", from an initial disturbance of {kick}")
+    return f"{words}, each of {q.show(answer, 'duration')}{kick}"
 
 
 def bands(answer: Part) -> Table:
     """Return where the answer changes, in some columns of the map; a workbook has all."""
-    x, y, every = answer.x, answer.y, answer.get("changes") or []
+    every = answer.get("changes") or []
 
-    def of(name: str, head: str) -> Column:
-        return Column(head, lambda change: value_of(y, y.parameter, change.get(name)))
+    def of(axis: Part, name: str, head: str) -> Column:
+        return Column(head, lambda change: q.value_of(axis, axis.parameter, change.get(name)))
 
+    x, y = (q.quantity(name).label for name in _names(answer))
     columns = (
-        Column(quantity(x.parameter).label, lambda change: value_of(x, x.parameter, change.x)),
-        of("y_low", f"{quantity(y.parameter).label} from"),
-        of("y_high", "to"),
+        of(answer.x, "x", x),
+        of(answer.y, "y_low", f"{y} from"),
+        of(answer.y, "y_high", "to"),
         text_column("whirls", lambda change: "above" if change.whirls_above else "below"),
-        of("margin", "margin"),
+        of(answer.y, "margin", "margin"),
     )
     step = max(1.0, (len(every) - 1) / (SHOWN - 1))
     chosen = tuple(every[round(i * step)] for i in range(min(SHOWN, len(every))))
@@ -218,12 +196,8 @@ def bands(answer: Part) -> Table:
 
 def unchanged(answer: Part) -> Iterator[tuple[str, str]]:
     """Yield at which values of x the cage whirls at no point, or at every one, beyond the scatter."""
-    columns: dict[float, list[Part]] = {}
-    for one in answer.points:
-        if one.runs:
-            columns.setdefault(one.x, []).append(one)
     changed = {one.x for one in answer.get("changes") or ()}
-    known = {x: along for x, along in columns.items() if x not in changed}
+    known = grouped((one.x, one) for one in answer.points if one.runs and one.x not in changed)
     calm = [x for x, along in known.items() if all(one.probability_high < 0.5 for one in along)]
     wild = [x for x, along in known.items() if all(one.probability_low > 0.5 for one in along)]
     for words, found in (("Whirls nowhere", calm), ("Whirls everywhere", wild)):
@@ -245,10 +219,10 @@ LEGEND = (
 def map_figure(answer: Part) -> Figure:
     """Return the share of the runs that whirl, where it changes, and what has no verdict."""
     x, y = (
-        parameter_axis(one.parameter, one.get("unit") or "-", one.get("values"), is_tight=True)
+        q.parameter_axis(one.parameter, one.get("unit") or "-", one.get("values"), is_tight=True)
         for one in (answer.x, answer.y)
     )
-    kick = "" if KICK in _names(answer) else fill(answer, ", initial disturbance {kick}")
+    kick = "" if KICK in _names(answer) else q.fill(answer, ", initial disturbance {kick}")
     marks = (*_cells(answer), *_overlays(answer))
     panel = Panel(title=f"Share of the runs that whirl{kick}", x=x, y=y, marks=marks)
     return figure(answer, (panel,), height=4.1, varied=_names(answer))
@@ -259,13 +233,13 @@ def _cells(answer: Part) -> Iterator[Mark]:
     x, y = answer.x.get("values"), answer.y.get("values")
     points = answer.points
     table = [points[i :: len(y)] for i in range(len(y))]
-    label = f"{quantity('probability_whirl').label} [-]"
+    label = f"{q.quantity('probability_whirl').label} [-]"
     values = [[one.probability_whirl for one in row] for row in table]
     hover = [[_hover(answer, one) for one in row] for row in table]
     yield Cells(x=x, y=y, values=values, label=label, low=0.0, high=1.0, colours="cividis", hover=hover)
+    striped = "undecided: the runs, or their drift, allow no verdict"
     refused = [[one.get("state") == "REFUSED" for one in row] for row in table]
     undecided = [[one.decision == "UNDECIDED" for one in row] for row in table]
-    striped = "undecided: the runs, or their drift, allow no verdict"
     if any(map(any, refused)):
         yield Hatched(x=x, y=y, where=refused, name="refused", strokes="xxxx", fill="#9a9a9a")
     if any(map(any, undecided)):
@@ -274,17 +248,17 @@ def _cells(answer: Part) -> Iterator[Mark]:
 
 def _hover(answer: Part, point: Part) -> str:
     place = ", ".join(
-        at(one, one.parameter, point.get(way)) for way, one in (("x", answer.x), ("y", answer.y))
+        q.at(one, one.parameter, point.get(way)) for way, one in (("x", answer.x), ("y", answer.y))
     )
     if point.decision is None:
         return f"{place}: {point.reason}"
-    share = f"share that whirls {show(point, 'probability_whirl')}, {point.runs} runs"
+    share = f"share that whirls {q.show(point, 'probability_whirl')}, {point.runs} runs"
     return f"{place}: {point.decision}; {share}"
 
 
 def _overlays(answer: Part) -> Iterator[Mark]:
     """Yield the linear limit, a bar from each point below a change to that above, and the study."""
-    x, y, found = answer.x, answer.y, answer.get("changes") or []
+    x, y, found = answer.x, answer.y, answer.get("changes")
     if set(_names(answer)) == {FRICTION, RESTITUTION}:
         law = linear_law(2.0 * sqrt(2.0 / answer.cage.ball_count), is_upright=x.parameter == FRICTION)
         yield replace(law, colour=BLACK, has_halo=True)
@@ -300,9 +274,9 @@ def _overlays(answer: Part) -> Iterator[Mark]:
 
 VERB = Verb(
     name="map",
-    options=Options,
     compute=compute,
     page=page,
+    options=Options,
     needs=("cage",),
     moves_a_cage=True,
     epilog="An axis is a numeric key of the study file with its section, or restitution_factor, "
@@ -310,5 +284,5 @@ VERB = Verb(
     "0.02..0.3:40:log. Finished runs are kept in the folder of the answer: after Ctrl-C run the same "
     "command to resume. With --json and no --out nothing is kept.",
     keeps_runs=True,
-    refusals=lambda study: refused(study, cage_motion),
+    links=("cage_motion",),
 )

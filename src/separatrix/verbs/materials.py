@@ -8,6 +8,7 @@ from operator import itemgetter
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
+from separatrix import __version__
 from separatrix.ground.document import Document, Part
 from separatrix.ground.errors import InputError
 from separatrix.ground.quantity import Quantity, alone
@@ -32,11 +33,7 @@ from separatrix.verbs.verb import Option, Tool
 if TYPE_CHECKING:
     from separatrix.study.library import Library, Record
 
-EPILOG = (
-    "Beside the shipped records those of materials.toml in the current folder "
-    "are read, as they are for a study there."
-)
-
+EPILOG = "Records of materials.toml in the current folder are read too, as they are for a study there."
 
 Kind = Annotated[
     str | None, Option("bearing material, cage material, film, fluid, friction table, bearing.", "KIND")
@@ -72,8 +69,7 @@ POINTS = ("triple_temperature", "boiling_temperature", "critical_temperature", "
 """Properties that do not depend on temperature."""
 
 PROPERTY, LISTED = Quantity(label="", digits=5), Quantity(label="", digits=4)
-RATIO = Quantity(label="", form=".3f")
-NOTHING = Part({}, {})
+MODULUS, RATIO = Quantity(label="", form=".3g"), Quantity(label="", form=".3f")
 
 
 # --- the records --------------------------------------------------------------------------------
@@ -125,8 +121,6 @@ def show_records(options: ShowOptions) -> Document:
 
 
 def _document(which: str, **content: object) -> Document:
-    from separatrix import __version__
-
     return {"separatrix_version": __version__, "verb": f"materials {which}", **content}
 
 
@@ -159,7 +153,7 @@ def _first(head: str, key: str, quantity: Quantity = LISTED) -> Column:
 
 
 def _data(record: Part, key: str = "elastic_modulus") -> list[Part]:
-    return (record.get("data") or NOTHING).get(key) or []
+    return (record.data.get(key) or []) if "data" in record else []
 
 
 def _sure(record: Part) -> str:
@@ -172,7 +166,7 @@ def _sure(record: Part) -> str:
 COLUMNS = (
     text_column("name", lambda one: one.name),
     text_column("also", lambda one: ", ".join(one.get("aliases") or ())),
-    _first("E", "elastic_modulus", Quantity(label="", form=".3g")),
+    _first("E", "elastic_modulus", MODULUS),
     _first("nu", "poisson_ratio", RATIO),
     _first("boils at", "boiling_temperature"),
     _first("bore", "bore", Quantity(label="", form=".4g")),
@@ -202,17 +196,20 @@ def show_page(answer: Part) -> Page:
 
 
 def _whole(record: Part) -> Iterator[Block]:
-    file, known = record.library, record.get("conditions") or NOTHING
+    file, known = record.library, record.values.get("conditions") or {}
     origin = "shipped" if file.shipped else "of the user"
     keys = ("title", "composition", "substance", "phase", "remark", "source", "confidence")
     yield facts(
         *((_named(key), record.get(key)) for key in keys),
-        *((_named(key), _span(one["value"], one.get("unit"))) for key, one in known.values.items()),
+        *((_named(key), _span(one["value"], one.get("unit"))) for key, one in known.items()),
         ("Also", ", ".join(record.get("aliases") or ())),
         ("Library", f"{file.file}, {origin}, sha256 {file.sha256[:12]}..."),
     )
     if record.kind == "friction table":
-        yield _frictions(record)
+        columns = friction_columns(record.environments, itemgetter(1))
+        caption = "Mean friction, with its standard deviation where it is known."
+        rows = tuple(record.values["friction"].items())
+        yield Table("friction", (text_column("material", itemgetter(0)), *columns), rows, caption)
     else:
         yield Heading("Data", depth=3)
         yield facts(*_properties(record))
@@ -220,12 +217,6 @@ def _whole(record: Part) -> Iterator[Block]:
 
 def _named(key: str) -> str:
     return key.replace("_", " ").capitalize()
-
-
-def _frictions(record: Part) -> Table:
-    columns = text_column("material", itemgetter(0)), *friction_columns(record.environments, itemgetter(1))
-    caption = "Mean friction, with its standard deviation where it is known."
-    return Table("friction", columns, tuple(record.values["friction"].items()), caption)
 
 
 def _properties(record: Part) -> Iterator[tuple[str, str]]:
@@ -249,19 +240,19 @@ def _stated(datum: Part, *, lasts: bool) -> Iterator[str | None]:
 
 LIST = Tool(
     name="materials list",
-    help="Every record: its numbers, how sure they are, and its library.",
-    epilog=EPILOG,
     compute=list_records,
     page=list_page,
+    help="Every record: its numbers, how sure they are, and its library.",
+    epilog=EPILOG,
     options=ListOptions,
     rows="materials",
 )
 SHOW = Tool(
     name="materials show",
-    help="One record whole: every number with source, conditions and confidence.",
-    epilog=EPILOG,
     compute=show_records,
     page=show_page,
+    help="One record whole: every number with source, conditions and confidence.",
+    epilog=EPILOG,
     options=ShowOptions,
     rows="records",
 )

@@ -9,7 +9,6 @@ from separatrix.present.blocks import Equation, Heading, Note, Page, Picture, fa
 from separatrix.present.figure import BLUE, GREEN, GREY, VERMILION, Across, Figure, Mark, Panel, Trace
 from separatrix.verbs.parts.answer_page import figure, page_of
 from separatrix.verbs.parts.quantity_text import axis, cell, fact, fill, named, places_table, show
-from separatrix.verbs.parts.refused import push, refused, rolling
 from separatrix.verbs.verb import NoOptions, Verb
 
 if TYPE_CHECKING:
@@ -93,9 +92,9 @@ def push_figure(answer: Part) -> Figure:
 
 VERB = Verb(
     name="mobility",
-    epilog="Dampings and effective mass of the most loaded ball, its law of traction F(u) with the capacity "
-    "of the races; rates and shares of its modes are in the JSON.",
     compute=compute,
     page=page,
-    refusals=lambda study: refused(study, rolling, push),
+    epilog="Dampings and effective mass of the most loaded ball, its law of traction F(u) with the capacity "
+    "of the races; rates and shares of its modes are in the JSON.",
+    links=("rolling", "push"),
 )

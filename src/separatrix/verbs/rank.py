@@ -7,6 +7,7 @@ from itertools import cycle
 from typing import TYPE_CHECKING, Any
 
 from separatrix.ground.document import Part
+from separatrix.present import figure as fig
 from separatrix.present.blocks import (
     Block,
     Column,
@@ -21,56 +22,17 @@ from separatrix.present.blocks import (
     grouped,
     text_column,
 )
-from separatrix.present.figure import (
-    CYCLE,
-    GREY,
-    MARKERS,
-    VERDICT_COLOURS,
-    VERDICT_MARKERS,
-    Across,
-    Axis,
-    Figure,
-    Label,
-    Mark,
-    Panel,
-    Trace,
-)
+from separatrix.verbs.parts import quantity_text as q
+from separatrix.verbs.parts import verdict_blocks as of
 from separatrix.verbs.parts.answer_page import figure, page_of
 from separatrix.verbs.parts.chain_blocks import basis_facts, restitution_blocks
-from separatrix.verbs.parts.curve_blocks import curve_blocks, curve_panel, disturbances
-from separatrix.verbs.parts.quantity_text import (
-    axis,
-    begun,
-    column,
-    fact,
-    fill,
-    known_columns,
-    quantity,
-    show,
-)
-from separatrix.verbs.parts.refused import candidate_cages, refused
-from separatrix.verbs.parts.verdict_blocks import (
-    MARK,
-    by_verdict,
-    candidate_numbers,
-    deciding,
-    evidence_column,
-    has_safety,
-    is_judged,
-    motion_column,
-    rank_texts,
-    verdict,
-    verdict_sentences,
-)
+from separatrix.verbs.parts.verdict_blocks import MARK, by_verdict, has_safety, judged, verdict
 from separatrix.verbs.verb import NoOptions, Verb
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from separatrix.study.study import Study
     from separatrix.verbs.cage_answers import RankingAnswer
     from separatrix.verdict.long_jobs import Runner
-    from separatrix.verdict.ranking_records import Ranking
 
 BRIEF, REPORT, LONG = Level.BRIEF, Level.REPORT, Level.LONG
 EVIDENCE = (
@@ -78,11 +40,7 @@ EVIDENCE = (
     "decides. Offset and forces: largest of any run; > what the races hold: there none has a meaning."
 )
 SHORT = (
-    "largest_offset",
-    "largest_tilt",
-    "drift_rate",
-    "largest_contact_force",
-    "largest_land_force",
+    *("largest_offset", "largest_tilt", "drift_rate", "largest_contact_force", "largest_land_force"),
     "rubbing_power",
 )
 NAME = text_column("material", lambda row: row.name)
@@ -92,23 +50,12 @@ POCKET = ("slip_speed", "impact_force", "pressure", "max_pressure", "contact_rad
 def compute(study: Study, options: NoOptions, runner: Runner) -> RankingAnswer:  # noqa: ARG001
     """Verdict, margin, rank and reason of each candidate material."""
     from separatrix.verbs.cage_answers import RankingAnswer
-    from separatrix.verbs.parts.cage_of_study import overdamped_notes, reference
-    from separatrix.verdict.long_jobs import made_into
+    from separatrix.verbs.parts.cage_of_study import answer_of_cage, overdamped_notes, reference
     from separatrix.verdict.ranking import rank
 
-    solution, cage = reference(study)
-    notes = (*solution.notes, *cage.notes, *overdamped_notes(solution.restitution))
-
-    def made(found: Ranking) -> RankingAnswer:
-        every = (*found.notes, *notes)
-        return RankingAnswer(solution=solution, cage=cage, ranking=found, notes=every)
-
-    return made_into(made, lambda: rank(study, runner=runner))
-
-
-def refusals(study: Study) -> Iterator[str]:
-    """Yield why there is no ranking: no environment, or no cage of a candidate to move."""
-    yield from refused(study, candidate_cages)
+    solution = reference(study)
+    notes = overdamped_notes(solution.restitution)
+    return answer_of_cage(RankingAnswer, "ranking", solution, lambda: rank(study, runner=runner), *notes)
 
 
 def page(answer: Part) -> Page:
@@ -116,32 +63,33 @@ def page(answer: Part) -> Page:
     (own,) = (one for one in answer.environments if one.name == answer.environment)
     others = [one for one in answer.environments if one.name != answer.environment]
     rows = own.materials
-    known = [row for row in rows if is_judged(row)]
+    known = [row for row in rows if judged(row)]
     apart = [row.name for row in known if row.get("paper_verdict") not in (None, row.verdict)]
-    kicks = ", ".join(disturbances(answer))
+    kicks = ", ".join(of.disturbances(answer))
+    every = [(one.name, row.name, row) for one in answer.environments for row in one.materials]
+    every += [("overall", row.name, row) for row in answer.overall]
     overall = verdicts("Overall: mean friction over the measured environments", answer.overall, LONG)
     return page_of(
         answer,
-        Note(" ".join([verdict_sentences(rows, own.name), *deciding(answer, rows)]), "lead"),
+        Note(" ".join([of.verdict_sentences(rows, own.name), *of.deciding(answer, rows)]), "lead"),
         *verdicts(own.name, rows),
         *by_paper(answer, known, apart),
         *over_inputs(answer, rows),
         *pictures(answer, own),
-        Heading(fill(answer, f"Evidence: {answer.runs} runs of {{duration}} from each of {kicks}")),
+        Heading(q.fill(answer, f"Evidence: {answer.runs} runs of {{duration}} from each of {kicks}")),
         Table(f"{own.name}, evidence", evidence(known), tuple(known)),
         Note(EVIDENCE, "legend", LONG),
-        *undecided(known),
-        reasons(rows),
+        *reasons(rows),
         *effects(answer, rows),
         Heading("Basis of the verdicts", LONG),
         facts(*basis_facts(answer), *holds_for(answer), level=LONG),
         Heading("Ball on pocket", LONG, 3),
-        facts(*(fact(answer.pocket, name) for name in POCKET), level=LONG),
+        facts(*(q.fact(answer.pocket, name) for name in POCKET), level=LONG),
         *restitution_blocks(answer.chain, REPORT),
-        *(curve_blocks(answer.stability, REPORT) if "stability" in answer else []),
+        *(of.curve_blocks(answer.stability, REPORT) if "stability" in answer else []),
         *(block for one in others for block in verdicts(one.name, one.materials, LONG)),
         *(overall if others else []),
-        candidate_numbers(answer),
+        q.all_numbers("all numbers", ("environment", "material"), every),
         draws=True,
         more=[
             *[f"the paper's method{'' if apart else ' (the same verdicts)'}"] * has_safety(rows),
@@ -163,37 +111,39 @@ def verdicts(name: str, rows: Sequence[Part], level: Level = Level.ALWAYS) -> li
     columns = (
         text_column("rank", lambda row: ranks[row.name], f"by {order}, = a tie within the scatter"),
         NAME,
-        column("friction", mark=lambda row: MARK * bool(row.extrapolation)),
-        column(compared[0], is_short=has_safety(rows)),
-        column(compared[1]),
-        column("probability_stable"),
+        q.column("friction", mark=lambda row: MARK * bool(row.extrapolation)),
+        q.column(compared[0], is_short=has_safety(rows)),
+        q.column(compared[1]),
+        q.column("probability_stable"),
         text_column("verdict", verdict),
     )
     table = Table(name, columns, tuple(rows), level=level)
     legend = [Note(explained(columns), "legend", LONG)] if level == Level.ALWAYS else []
-    return [Heading(begun(name), LONG), table, *legend, *footnotes(rows, level)]
+    return [Heading(q.begun(name), LONG), table, *legend, *of.footnotes(rows, level)]
 
 
 def ranks_of(rows: Sequence[Part]) -> dict[str, str]:
-    """Return the ranks of candidates as text, by name."""
-    return dict(zip((row.name for row in rows), rank_texts(row.get("rank") for row in rows), strict=True))
+    """Return the ranks of candidates as text, by name: = after a shared one, a dash for none."""
+    known = [row.get("rank") for row in rows]
+    texts = ["-" if rank is None else f"{rank}{'=' * (known.count(rank) > 1)}" for rank in known]
+    return dict(zip((row.name for row in rows), texts, strict=True))
 
 
-def by_paper(answer: Part, judged: Sequence[Part], apart: Sequence[str]) -> list[Block]:
+def by_paper(answer: Part, known: Sequence[Part], apart: Sequence[str]) -> list[Block]:
     """Return the answer of the paper's model beside another one, and for whom the two stand apart."""
-    rows = [row for row in judged if row.get("paper_verdict") is not None]
+    rows = [row for row in known if row.get("paper_verdict") is not None]
     if not has_safety(rows):
         return []
     numbers = ("restitution_threshold", "margin", "paper_probability_stable")
-    columns = (NAME, *map(column, numbers), text_column("verdict", lambda row: row.paper_verdict))
-    model = fill(answer.chain, "in the plane, balls as dampers of {race_damping}, Eq. 18")
-    why = fill(
+    columns = (NAME, *map(q.column, numbers), text_column("verdict", lambda row: row.paper_verdict))
+    model = q.fill(answer.chain, "in the plane, balls as dampers of {race_damping}, Eq. 18")
+    why = q.fill(
         answer.chain,
         f" It differs for {', '.join(apart)}: a ball that may spin yields to a slow push by "
         "{race_damping_free_spin}, and takes more energy from an impact.",
     )
-    each = by_verdict(grouped((row.paper_verdict, row.name) for row in rows))
-    caption = f"{begun(model)}.{why if apart else ''}"
+    each = by_verdict((row.paper_verdict, row.name) for row in rows)
+    caption = f"{q.begun(model)}.{why if apart else ''}"
     return [
         *([Note(f"The paper's method ({model}): {each}.{why}", level=BRIEF)] if apart else []),
         Heading("The paper's method", LONG, 3),
@@ -206,32 +156,24 @@ def evidence(rows: Sequence[Part]) -> tuple[Column, ...]:
     rolls = any(count.rolls for row in rows for count in row.by_kick)
     return (
         NAME,
-        motion_column(),
+        of.motion_column(),
         _runs("stable runs", "settles", "rolls"),
         *([_runs("of them roll", "rolls")] if rolls else []),
-        *known_columns(map(evidence_column, SHORT), rows),
+        *q.known_columns(map(of.evidence_column, SHORT), rows),
     )
 
 
 def _runs(head: str, *keys: str) -> Column:
     """Return the column of runs that end in one of some ways, from each initial disturbance."""
-
-    def counts(row: Part) -> str:
-        return " ".join(str(sum(getattr(count, key) for key in keys)) for count in row.by_kick)
-
-    return text_column(head, counts)
+    return text_column(head, lambda row: " ".join(str(sum(map(count.get, keys))) for count in row.by_kick))
 
 
-def reasons(rows: Sequence[Part]) -> Block:
-    """Return the reasons; candidates of the same friction share theirs."""
+def reasons(rows: Sequence[Part]) -> list[Block]:
+    """Return the reasons, on a screen of those undecided; candidates of the same friction share theirs."""
+    shared = grouped((row.reason, row.name) for row in rows if row.get("verdict") == "UNDECIDED")
+    notes = [Note(f"{', '.join(who)}: {reason}", level=BRIEF) for reason, who in shared.items()]
     each = grouped((row.reason, row.name) for row in rows)
-    return facts(*((", ".join(who), reason) for reason, who in each.items()), level=LONG)
-
-
-def undecided(rows: Sequence[Part]) -> list[Block]:
-    """Return why candidates are undecided, for a screen."""
-    each = grouped((row.reason, row.name) for row in rows if row.verdict == "UNDECIDED")
-    return [Note(f"{', '.join(who)}: {reason}", level=BRIEF) for reason, who in each.items()]
+    return [*notes, facts(*((", ".join(who), reason) for reason, who in each.items()), level=LONG)]
 
 
 def effects(answer: Part, rows: Sequence[Part]) -> list[Block]:
@@ -239,38 +181,21 @@ def effects(answer: Part, rows: Sequence[Part]) -> list[Block]:
     own = [row for row in rows if row.name == answer.candidate and "own_critical_friction_low" in row]
     columns = (
         text_column("with", lambda row: row.get("change") or "all inputs as stated"),
-        column("own_critical_friction"),
+        q.column("own_critical_friction"),
     )
     title = f"What else moves the critical friction of {answer.candidate}"
     known = (*own, *answer.effects) if answer.effects else ()
-    return [Heading(title, LONG, 3), Table("effects", columns, known, level=LONG)] if known else []
-
-
-# Words.
-
-
-def footnotes(rows: Sequence[Part], level: Level) -> list[Note]:
-    """Return in what respect frictions are extrapolated; on a screen, the first one."""
-    measured = [row for row in rows if "friction" in row]
-    who = grouped((sentence, row.name) for row in measured for sentence in row.extrapolation)
-    each = [
-        one if len(names) == len(measured) else f"{one} ({', '.join(names)})" for one, names in who.items()
-    ]
-    words = f"{MARK} extrapolated beyond the tests: {{}}."
-    brief = f"{each[0]}; more: `--full`" if each[1:] else each[0] if each else ""
-    notes = (Note(words.format("; ".join(each)), "legend", LONG), Note(words.format(brief), "legend", BRIEF))
-    return [one for one in notes if each and one.level & level]
+    return [Heading(title, LONG, 3), Table("effects", columns, known, level=LONG)]
 
 
 def over_inputs(answer: Part, rows: Sequence[Part]) -> list[Block]:
     """Return the verdicts with the uncertain inputs drawn; none if the study states none."""
     known = [row for row in rows if row.get("uncertain_verdict") is not None]
-    each = grouped(
-        (row.uncertain_verdict, f"{row.name} {show(row, 'uncertain_probability_stable')}") for row in known
-    )
+    chance = "uncertain_probability_stable"
+    each = by_verdict((row.uncertain_verdict, f"{row.name} {q.show(row, chance)}") for row in known)
     names = ", ".join(one["name"] for one in answer.values["study"]["uncertain_inputs"])
     words = f"Uncertain inputs ({names}) are at their means above; drawn for each run, P(stable) is: "
-    return [Note(f"{words}{by_verdict(each)}.")] if known else []
+    return [Note(f"{words}{each}.")] if known else []
 
 
 def holds_for(answer: Part) -> list[tuple[str, Any]]:
@@ -278,10 +203,10 @@ def holds_for(answer: Part) -> list[tuple[str, Any]]:
     rows = [row for one in answer.environments for row in one.materials if "friction" in row]
     scatter = "none: every friction has its measured scatter"
     if any(row.friction_scatter_assumed for row in rows):
-        scatter = fill(answer, "assumed to scatter by {friction_scatter} of their mean: a guess")
+        scatter = q.fill(answer, "assumed to scatter by {friction_scatter} of their mean: a guess")
     film = ""
     if answer.restitution_factor < answer.solid_lubrication_limit:
-        film = fill(answer, " The contact model predicts {restitution_factor} for this film.")
+        film = q.fill(answer, " The contact model predicts {restitution_factor} for this film.")
     return [("Unrepeated tests", scatter), ("The paper's bound", f"{answer.paper_statement}{film}")]
 
 
@@ -302,19 +227,19 @@ def pictures(answer: Part, own: Part) -> list[Block]:
     return found
 
 
-def on_the_curve(answer: Part, own: Part) -> Figure:
+def on_the_curve(answer: Part, own: Part) -> fig.Figure:
     """Return the paper's stability curve with the candidates where the bearing runs, and its verdicts."""
     rows = [row for row in own.materials if "friction" in row]
-    found, labels = list[Mark](), list[Label]()
+    found, labels = list[fig.Mark](), list[fig.Label]()
     for row in rows:
         word = row.get("paper_verdict") or row.get("verdict") or "not finished"
         look, star = look_of(word), MARK * bool(row.extrapolation)
         eta, friction = row.restitution_factor, row.friction
-        found.append(Trace(x=(0.0, 1.0), y=(friction, friction), colour=look["colour"], width=0.4))
-        found.append(Trace(x=(eta,), y=(friction,), line="", size=5.0, hover=(hover(row),), **look))
-        text = f"{row.name}  {show(row, 'friction')}{star}  {word}"
-        labels.append(Label(y=friction, text=text, colour=look["colour"]))
-    panel = curve_panel(
+        found.append(fig.Trace(x=(0.0, 1.0), y=(friction, friction), colour=look["colour"], width=0.4))
+        found.append(fig.Trace(x=(eta,), y=(friction,), line="", size=5.0, hover=(hover(row),), **look))
+        text = f"{row.name}  {q.show(row, 'friction')}{star}  {word}"
+        labels.append(fig.Label(y=friction, text=text, colour=look["colour"]))
+    panel = of.curve_panel(
         answer,
         answer.stability,
         title=f"The paper's method, {own.name}",
@@ -328,18 +253,18 @@ def on_the_curve(answer: Part, own: Part) -> Figure:
 
 def look_of(word: str) -> dict[str, Any]:
     """Return colour and marker of a verdict."""
-    return {"colour": VERDICT_COLOURS.get(word, GREY), "marker": VERDICT_MARKERS.get(word, "x")}
+    return {"colour": fig.VERDICT_COLOURS.get(word, fig.GREY), "marker": fig.VERDICT_MARKERS.get(word, "x")}
 
 
 def hover(row: Part) -> str:
     """Return what a candidate's mark says under the pointer."""
     compared = ("safety_factor",) if has_safety([row]) else ("restitution_threshold", "margin")
-    names = (*compared, "probability_stable") if is_judged(row) else ()
-    numbers = [f"{quantity(name).label} {show(row, name)}" for name in ("friction", *names)]
+    names = (*compared, "probability_stable") if judged(row) else ()
+    numbers = [f"{q.quantity(name).label} {q.show(row, name)}" for name in ("friction", *names)]
     return "; ".join([f"{row.name}: {verdict(row)}", *numbers])
 
 
-def overview(answer: Part, own: Part) -> Figure:
+def overview(answer: Part, own: Part) -> fig.Figure:
     """Return what candidates are ranked by in each environment and overall; best at the top.
 
     That is the safety factor, or the restitution threshold in the paper's model; with its interval where the
@@ -348,45 +273,44 @@ def overview(answer: Part, own: Part) -> Figure:
     safe, ranks = has_safety(own.materials), ranks_of(own.materials)
     place = {name: float(at) for at, name in enumerate(reversed(ranks))}
     name, what = "restitution_threshold", "Restitution thresholds"
-    x, bound = axis(name, "-", [], low=-0.012, high=1.0), answer.restitution_factor
+    x, bound = q.axis(name, "-", [], low=-0.012, high=1.0), answer.restitution_factor
     if safe:
         name, what, bound = "safety_factor", "Safety factors", 1.0
-        x = axis(name, "-", [], is_log=True)
+        x = q.axis(name, "-", [], is_log=True)
 
-    def known_of(rows: Sequence[Part]) -> list[Part]:
-        return [row for row in rows if f"{name}_low" in row]
-
-    def trace(rows: Sequence[Part], shift: float, where: str, **look: Any) -> Trace:
-        return Trace(
-            x=[row.get(name) or row.get(f"{name}_low") for row in known_of(rows)],
-            y=[place[row.name] + shift for row in known_of(rows)],
-            hover=tuple(f"{where}; {hover(row)}" for row in known_of(rows)),
+    def trace(rows: Sequence[Part], shift: float, where: str, **look: Any) -> fig.Trace:
+        known = [row for row in rows if f"{name}_low" in row]
+        if "ends_along" in look:
+            look |= {end: [row.get(f"{name}_{end}") for row in known] for end in ("low", "high")}
+        return fig.Trace(
+            x=[row.get(name) or row.get(f"{name}_low") for row in known],
+            y=[place[row.name] + shift for row in known],
+            hover=tuple(f"{where}; {hover(row)}" for row in known),
             line="",
             name=where,
             **look,
         )
 
-    low, high = ([row.get(f"{name}_{end}") for row in known_of(own.materials)] for end in ("low", "high"))
-    ours: dict[str, Any] = {"low": low, "high": high, "ends_along": "x", "marker": "D", "size": 4.5}
-    found: list[Mark] = [
-        Across(at=bound, name="half the runs whirl" if safe else "this bearing with this film"),
+    ours: dict[str, Any] = {"ends_along": "x", "marker": "D", "size": 4.5}
+    found: list[fig.Mark] = [
+        fig.Across(at=bound, name="half the runs whirl" if safe else "this bearing with this film"),
         trace(own.materials, 0.0, f"{own.name}, with its 95 % interval", **ours),
     ]
     others = [(one.name, one.materials) for one in answer.environments if one.name != own.name]
     others += [("overall", answer.overall)] if others else []
-    looks = zip(others, cycle(MARKERS), cycle(CYCLE), strict=False)
+    looks = zip(others, cycle(fig.MARKERS), cycle(fig.CYCLE), strict=False)
     for at, ((where, rows), marker, colour) in enumerate(looks):
         shift = 0.26 - 0.52 * (at + 0.5) / len(others)
         found.append(trace(rows, shift, where, marker=marker, colour=colour, size=3.6))
     labels = tuple(
-        Label(y=place[row.name], text=verdict(row), **look_of(verdict(row))) for row in own.materials
+        fig.Label(y=place[row.name], text=verdict(row), **look_of(verdict(row))) for row in own.materials
     )
     ticks = tuple(f"{one}  {ranks[one]}" for one in place)
-    y = Axis(label="", low=-0.6, high=len(place) - 0.4, names=ticks)
+    y = fig.Axis(label="", low=-0.6, high=len(place) - 0.4, names=ticks)
     title = f"{what}, larger is better; ranks in {own.name}"
     return figure(
         answer,
-        (Panel(title=title, x=x, y=y, marks=tuple(found), labels=labels, head="verdict"),),
+        (fig.Panel(title=title, x=x, y=y, marks=tuple(found), labels=labels, head="verdict"),),
         height=0.9 + 0.32 * len(place),
         more=(f"seed {answer.seed}",),
     )
@@ -399,5 +323,5 @@ VERB = Verb(
     needs=("cage", "ranking"),
     moves_a_cage=True,
     keeps_runs=True,
-    refusals=refusals,
+    links=("candidate_cages",),
 )

@@ -7,13 +7,21 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from separatrix import __version__
 from separatrix.ground.document import Document, part_of
 from separatrix.ground.errors import InputError
+from separatrix.ground.files import staged
 from separatrix.present.blocks import Note, Page, joined
 from separatrix.verbs import VERBS, verb_named
-from separatrix.verbs.answer_files import page_of_document
+from separatrix.verbs.answer_files import (
+    asked_by,
+    inputs_of_study,
+    page_of_document,
+    read_answer,
+    refusing_damage,
+    save_answer,
+)
 from separatrix.verbs.parts.bearing_drawing import bearing_picture
-from separatrix.verbs.saved_answers import inputs_of_study, read_answer, refusing_damage
 
 if TYPE_CHECKING:
     from separatrix.study.study import Study
@@ -54,8 +62,6 @@ class Report:
 
     def write(self, folder: Path, *, with_pdf: bool) -> list[Path]:
         """Write report.html, and report.pdf too, into a folder, both or none; return their paths."""
-        from separatrix.ground.files import staged
-
         contents = {"report.html": self.html().encode()} | ({"report.pdf": self.pdf()} if with_pdf else {})
         with staged(folder) as stage:
             for name, content in contents.items():
@@ -64,8 +70,6 @@ class Report:
 
     def document(self, files: Sequence[Path] = ()) -> Document:
         """Plain data: what was answered in short, and where the report is."""
-        from separatrix import __version__
-
         return {
             "separatrix_version": __version__,
             "verb": "report",
@@ -92,20 +96,16 @@ def report_of(
         What a refusal of a damaged answer names.
     """
     kept = {verb: found[verb] for verb in ORDER if verb in found}
-    pages = {
-        verb: page_of_document(verb_named(verb), one, f"{where}: {verb}.json") for verb, one in kept.items()
-    }
-    if not pages:
+    if not kept:
         raise InputError(where, "has no answer that a report shows", cure="Name the study instead.")
+    pages = {one: page_of_document(verb_named(one), kept[one], f"{where}: {one}.json") for one in kept}
     main, first = next(iter(pages.items()))
-    with refusing_damage(where):
-        others = [(verb, differing(kept[main], one)) for verb, one in kept.items()]
-    apart = [
-        f"`{verb}` was computed from other inputs than `{main}`: {names} differ."
-        for verb, names in others
-        if names
-    ]
-    caveats = [Note(text, "caveat") for text in (*missing, *apart)]
+    caveats = [Note(text, "caveat") for text in missing]
+    for verb, one in kept.items():
+        with refusing_damage(where):
+            names = differing(kept[main], one)
+        text = f"`{verb}` was computed from other inputs than `{main}`: {names} differ."
+        caveats += [Note(text, "caveat")] if names else []
     bearing = kept.get("bearing")
     drawn = bearing_picture(part_of(kept[main]), part_of(bearing).contacts if bearing else None)
     pages[main] = replace(first, blocks=(*first.blocks[:1], *caveats, *first.blocks[1:], drawn))
@@ -123,22 +123,8 @@ def differing(one: Document, other: Document) -> str:
     return ", ".join(names[:4]) + (f" and {len(names) - 4} more" if names[4:] else "")
 
 
-def asked_by(study: Study) -> Document:
-    """Return what each answer to a study has of the study, with this version."""
-    from separatrix import __version__
-    from separatrix.ground.plain_data import plain
-    from separatrix.study.sources import resolved
-
-    known = {"study": plain(resolved(study), "study"), "seed": study.stability.seed}
-    return known | {"separatrix_version": __version__}
-
-
 def report_of_study(
-    study: Study,
-    compute: Callable[[Verb], Document],
-    folder: Path | None = None,
-    *,
-    pictures: bool = False,
+    study: Study, compute: Callable[[Verb], Document], folder: Path | None = None, *, pictures: bool = False
 ) -> Report | None:
     """Return the report of a study; None if an answer that it needs was interrupted.
 
@@ -146,7 +132,6 @@ def report_of_study(
     and written there, their `pictures` if that is asked for.
     """
     from separatrix.study.reading import require
-    from separatrix.verbs.answer_files import save_answer
 
     asked, found, missing = asked_by(study), dict[str, Document](), list[str]()
     for path in [folder / f"{verb}.json" for verb in ORDER] if folder is not None else []:

@@ -9,6 +9,7 @@ from operator import itemgetter
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
+from separatrix import __version__
 from separatrix.ground.document import Document, Part
 from separatrix.ground.errors import InputError
 from separatrix.ground.quantity import ABSENT, Quantity
@@ -16,7 +17,7 @@ from separatrix.ground.toml import path_text
 from separatrix.ground.units import printable, shown
 from separatrix.present.blocks import Block, Cell, Column, Note, Page, Table, text_column
 from separatrix.verbs import verb_named
-from separatrix.verbs.saved_answers import is_number, read_answers, refusing_damage
+from separatrix.verbs.answer_files import is_number, read_answers, refusing_damage
 from separatrix.verbs.verb import Option, Tool, Verb
 
 if TYPE_CHECKING:
@@ -30,7 +31,7 @@ class Options:
     result: Annotated[Path, Option("Folder of answers, the .json of one, or a report.", "RESULT", True)]
 
 
-EXACT, ROUNDED, DIFFERENT = "bit for bit", "to rounding", "different"
+DIFFERENT = "different"
 ROUNDING = 1e-9
 """Relative difference up to which numbers are equal to rounding; a change of an input is far larger."""
 
@@ -41,8 +42,6 @@ IGNORED = ("separatrix_version", "provenance", "warnings", "notes", "units")
 
 def compute(options: Options, jobs: int = 1, progress: Progress | None = None) -> Document:
     """Compute the answers of a folder or file again, and compare them."""
-    from separatrix import __version__
-
     where = path_text(options.result)
     found = []
     for one in read_answers(options.result).values():
@@ -62,8 +61,7 @@ def _again(stored: Document, where: str, jobs: int, progress: Progress | None) -
     if not isinstance(kept, dict) or not isinstance(kept.get("command"), dict):
         raise InputError(where, "has no provenance", cure="Answer its question again.")
     if not isinstance(kept.get("study"), dict):
-        why = printable(kept.get("reason") or "", 200)
-        raise InputError(where, "does not keep its study", cure=why)
+        raise InputError(where, "does not keep its study", cure=printable(kept.get("reason") or "", 200))
     if stored.get("complete") is False:
         raise InputError(where, "was interrupted", cure="Resume it: run its command again.")
     verb, study = verb_named(stored["verb"]), study_again(kept["study"])
@@ -85,16 +83,15 @@ def options_from(verb: Verb, given: object) -> Any:
         raise InputError("question", "must be the options of the verb", shown(given))
     known, found = verb.shown_options(), {}
     for name, value in given.items():
+        option = f"--{printable(str(name), 40)}"
         if name not in known and value is None:  # of an earlier version, and not asked for
             continue
         if name not in known:
-            raise InputError(f"--{printable(str(name), 40)}", f"is not an option of {verb.name}")
+            raise InputError(option, f"is not an option of {verb.name}")
         try:
             found[name] = TypeAdapter(known[name][0]).validate_json(json.dumps(value), strict=True)
         except ValidationError:
-            raise InputError(
-                f"--{name}", "has a value that is not one of this option", shown(value)
-            ) from None
+            raise InputError(option, "has a value that is not one of this option", shown(value)) from None
     return verb.options(**found)
 
 
@@ -102,7 +99,7 @@ def agreement(stored: Document, computed: Document) -> Document:
     """Compare two documents in their values; not in their versions, provenance and warnings."""
     found = [*_differing(stored, computed, "", None)]
     beyond = [one for one in found if one["relative"] is None or one["relative"] > ROUNDING]
-    words = DIFFERENT if beyond else ROUNDED if found else EXACT
+    words = DIFFERENT if beyond else "to rounding" if found else "bit for bit"
     shown = beyond or sorted(found, key=itemgetter("relative"), reverse=True)
     return {"agreement": words, "count": len(beyond), "differences": shown[:MOST_SHOWN]}
 
@@ -133,7 +130,6 @@ def _short(value: object) -> object:
 
 def _versions(stored: Document, kept: Document) -> Iterator[Document]:
     """Yield each version that is another one here; null where the answer does not state it."""
-    from separatrix import __version__
     from separatrix.study.sources import versions
 
     before = {"separatrix": stored["separatrix_version"], **(kept.get("versions") or {})}
@@ -161,8 +157,7 @@ def _blocks(one: Part) -> Iterator[Block]:
     yield Note(f"{one.verb} {one.name}: {how}.", "lead")
     caption = f"{one.count - MOST_SHOWN} more." if one.count > MOST_SHOWN else ""
     yield Table(f"{one.verb} differs", COLUMNS, tuple(one.differences or ()), caption)
-    others = [f"{at.name} {at.here} (then {at.stored})" for at in one.versions or ()]
-    if others:
+    if others := [f"{at.name} {at.here} (then {at.stored})" for at in one.versions or ()]:
         yield Note(f"Other versions here: {', '.join(others)}.")
 
 
@@ -179,10 +174,10 @@ COLUMNS = (
 
 VERB = Tool(
     name="reproduce",
-    epilog="The study is the one that the answer keeps, with the texts of the files that it names; the same "
-    "verb runs with the same options. RESULT is a folder, the .json of an answer, or a report (.html).",
     compute=compute,
     page=page,
+    epilog="The study is the one that the answer keeps, with the texts of the files that it names; the same "
+    "verb runs with the same options. RESULT is a folder, the .json of an answer, or a report (.html).",
     options=Options,
     rows="answers",
     takes_time=True,

@@ -13,7 +13,6 @@ from separatrix.present.figure import SEQUENCE, Figure, Mark, Panel, Trace
 from separatrix.verbs.parts.answer_page import entry_words, figure, page_of
 from separatrix.verbs.parts.chain_blocks import clearance_blocks, restitution_blocks
 from separatrix.verbs.parts.quantity_text import axis, fill, number_of, place_column, quantity
-from separatrix.verbs.parts.refused import impact, refused, rolling
 from separatrix.verbs.verb import NoOptions, Verb
 
 if TYPE_CHECKING:
@@ -120,10 +119,4 @@ def film_figure(answer: Part, curve: Part) -> Figure:
     return figure(answer, (panel,), height=3.0)
 
 
-VERB = Verb(
-    name="restitution",
-    compute=compute,
-    page=page,
-    needs=("cage",),
-    refusals=lambda study: refused(study, rolling, impact),
-)
+VERB = Verb(name="restitution", compute=compute, page=page, needs=("cage",), links=("rolling", "impact"))

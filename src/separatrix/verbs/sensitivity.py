@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Annotated
+from functools import partial
+from typing import TYPE_CHECKING
 
 from separatrix.ground.document import Part
-from separatrix.ground.errors import InputError
 from separatrix.present.blocks import (
     Block,
     Heading,
@@ -20,33 +20,16 @@ from separatrix.present.blocks import (
     grouped,
     text_column,
 )
+from separatrix.verbs.parts import verdict_blocks as of
 from separatrix.verbs.parts.answer_page import page_of
-from separatrix.verbs.parts.quantity_text import (
-    all_numbers,
-    column,
-    fill,
-    number_of,
-    show,
-)
-from separatrix.verbs.parts.refused import candidate_cages, refused
-from separatrix.verbs.parts.verdict_blocks import (
-    MARK,
-    by_verdict,
-    evidence_column,
-    judged,
-    motion_column,
-    verdict,
-)
-from separatrix.verbs.verb import Option, Verb
+from separatrix.verbs.parts.quantity_text import all_numbers, column, fill, number_of, show
+from separatrix.verbs.parts.verdict_blocks import MARK, each_verdict, evidence_column, judged, verdict
+from separatrix.verbs.verb import Samples, Verb
 
 if TYPE_CHECKING:
-    from separatrix.chain.solution import Solution
     from separatrix.study.study import Study
     from separatrix.verbs.cage_answers import SensitivityAnswer
     from separatrix.verdict.long_jobs import Runner
-
-SAMPLES, FEWEST_SAMPLES, MOST_SAMPLES = 512, 64, 65_536
-"""Bearings that `sensitivity` draws."""
 
 GUESS = "?"
 """After a friction whose scatter is a guess."""
@@ -59,49 +42,20 @@ LISTED, LEAST = 12, 0.02
 class Options:
     """How many bearings are drawn."""
 
-    samples: Annotated[int, Option("Bearings drawn, a power of two.", "N")] = SAMPLES
+    samples: Samples = 512
 
 
 def compute(study: Study, options: Options, runner: Runner) -> SensitivityAnswer:
     """Draw bearings from the uncertain inputs and judge the cages of every candidate."""
     from separatrix.verbs.cage_answers import SensitivityAnswer
-    from separatrix.verbs.parts.cage_of_study import reference
-    from separatrix.verdict.draws import frictions_to_draw, uncertain_inputs
-    from separatrix.verdict.long_jobs import made_into
+    from separatrix.verbs.parts import cage_of_study as asked
     from separatrix.verdict.uncertain_study import uncertain_study
 
-    samples = options.samples
-    if not FEWEST_SAMPLES <= samples <= MOST_SAMPLES or samples.bit_count() != 1:
-        near = 1 << max(0, samples - 1).bit_length()
-        cure = f"Try {min(max(near, FEWEST_SAMPLES), MOST_SAMPLES)}."
-        rule = f"must be a power of two from {FEWEST_SAMPLES} to {MOST_SAMPLES}"
-        raise InputError("--samples", rule, got=str(samples), cure=cure)
-    solution, cage = reference(study)
-    uncertain_inputs(study, frictions_to_draw(study))  # refused before anything is timed
-    return made_into(
-        lambda found: SensitivityAnswer(
-            solution=solution,
-            cage=cage,
-            uncertain=found,
-            notes=(*solution.notes, *cage.notes, *found.notes),
-        ),
-        lambda: uncertain_study(study, samples, runner=runner),
-    )
-
-
-def refusals(study: Study) -> Iterator[str]:
-    """Yield why no bearing can be drawn."""
-    if study.cage is not None and study.ranking is not None:
-        yield from refused(study, candidate_cages, _drawable)
-
-
-def _drawable(solution: Solution) -> None:
-    from separatrix.study.candidates import ranking_question, required_environment
-    from separatrix.verdict.draws import frictions_to_draw, uncertain_inputs
-
-    study = solution.study
-    required_environment(study, ranking_question(study))
-    uncertain_inputs(study, frictions_to_draw(study))
+    asked.refuse_samples(options.samples)
+    solution = asked.reference(study)
+    asked.drawn_bearings(solution)  # refused before anything is timed
+    drawn = partial(uncertain_study, study, options.samples, runner=runner)
+    return asked.answer_of_cage(SensitivityAnswer, "uncertain", solution, drawn)
 
 
 def page(answer: Part) -> Page:
@@ -124,14 +78,6 @@ def page(answer: Part) -> Page:
     )
 
 
-# Verdicts.
-
-
-def each_verdict(rows: Sequence[Part]) -> str:
-    """Return each verdict with who has it."""
-    return by_verdict(grouped((verdict(row), row.name) for row in rows))
-
-
 def verdicts(rows: Sequence[Part]) -> list[Block]:
     """Return friction, P(stable), verdict and motion of each candidate."""
     runs = "from the worst initial disturbance; fewer where the verdict was plain before"
@@ -140,7 +86,7 @@ def verdicts(rows: Sequence[Part]) -> list[Block]:
         column("friction", head="friction of a new cage", mark=friction_mark),
         column("probability_stable", of=judged),
         text_column("verdict", verdict),
-        motion_column(),
+        of.motion_column(),
         *map(evidence_column, ("largest_offset", "largest_contact_force")),
         replace(column("runs", of=judged), meaning=runs),
     )
@@ -154,16 +100,14 @@ def friction_mark(row: Part) -> str:
 
 def footnotes(answer: Part, own: Sequence[Part]) -> Iterator[Note]:
     """Yield the restitution factors in the study's environment, and what the marks beside frictions mean."""
-    etas = grouped((show(row, "restitution_factor"), row.name) for row in own if "restitution_factor" in row)
-    if etas:
-        each = by_verdict(etas) if len(etas) > 1 else next(iter(etas))
+    known = [(show(row, "restitution_factor"), row.name) for row in own if "restitution_factor" in row]
+    if known:
+        each = of.by_verdict(known) if len({eta for eta, _ in known}) > 1 else known[0][0]
         yield Note(f"Restitution factor $eta$ of the drawn bearings, median (nine in ten): {each}.", "legend")
     if any(row.get("friction_scatter_assumed") for row in own):
         assumed = "its scatter from sample to sample was not measured: {default_scatter} of the mean is "
         yield Note(fill(answer, f"{GUESS} {assumed}assumed, a guess ([ranking] friction_scatter)."), "legend")
-    if words := dict.fromkeys(text for row in own for text in row.extrapolation):
-        yield Note(f"{MARK} extrapolated beyond the tests: {'. '.join(words)}.", "legend", Level.LONG)
-        yield Note(f"{MARK} extrapolated beyond the tests: see `--full`.", "legend", Level.BRIEF)
+    yield from of.footnotes(own)
 
 
 def ensemble_facts(answer: Part) -> Iterator[tuple[str, str]]:
@@ -176,15 +120,11 @@ def ensemble_facts(answer: Part) -> Iterator[tuple[str, str]]:
     yield "Ended early", fill(answer, "at a risk of {stopped_risk} of another verdict at each look")
 
 
-# What decides.
-
-
 def sources(answer: Part) -> Iterator[Block]:
     """Yield the sources of the cases that have any, the least decided first, and how many have none."""
     chances = {row.name: row.get("probability_stable") or 0.0 for row in answer.materials}
-    known = sorted(
-        (one for one in answer.drivers if one.shares), key=lambda one: abs(chances[one.name] - 0.5)
-    )
+    known = [one for one in answer.drivers if one.shares]
+    known.sort(key=lambda one: abs(chances[one.name] - 0.5))
     shares = [(case, one) for case in known for one in case.shares if one.share >= LEAST]
     columns = (
         text_column("material", lambda row: row[0].name),
@@ -212,13 +152,13 @@ def is_friction(name: str) -> bool:
 
 VERB = Verb(
     name="sensitivity",
-    epilog="Every number that the study writes with a distribution is drawn, and the frictions with "
-    "their scatter: 9 % of the mean where none was measured, a guess.",
     compute=compute,
     page=page,
+    epilog="Every number that the study writes with a distribution is drawn, and the frictions with "
+    "their scatter: 9 % of the mean where none was measured, a guess.",
     options=Options,
     needs=("cage", "ranking"),
     moves_a_cage=True,
     keeps_runs=True,
-    refusals=refusals,
+    links=("candidate_cages", "drawn_bearings"),
 )

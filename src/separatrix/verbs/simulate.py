@@ -10,25 +10,13 @@ from typing import TYPE_CHECKING, Annotated
 from separatrix.ground.document import Part
 from separatrix.ground.errors import InputError
 from separatrix.ground.units import NUMBER, printable
-from separatrix.present.blocks import (
-    Block,
-    Facts,
-    Heading,
-    Level,
-    Note,
-    Page,
-    Picture,
-    View,
-    facts,
-)
+from separatrix.present.blocks import Block, Facts, Heading, Level, Note, Page, Picture, View, facts
 from separatrix.present.figure import Figure, Panel
 from separatrix.verbs.parts.answer_page import figure, figure_heading, page_of
 from separatrix.verbs.parts.chain_blocks import clearance_blocks, heat_blocks
-from separatrix.verbs.parts.curve_blocks import pocket_friction
 from separatrix.verbs.parts.quantity_text import fill, places_table, show
-from separatrix.verbs.parts.refused import cage_motion, refused
-from separatrix.verbs.parts.verdict_blocks import DIRECTIONS, power_facts
-from separatrix.verbs.verb import Option, Verb
+from separatrix.verbs.parts.verdict_blocks import DIRECTIONS, pocket_friction, power_facts
+from separatrix.verbs.verb import Kick, Option, Verb
 
 if TYPE_CHECKING:
     from separatrix.cage import History, MovingCage
@@ -39,17 +27,15 @@ if TYPE_CHECKING:
 MOST_SHOWN = 20_000
 """Samples of a simulated run, at most: every step of a short one."""
 
-FEW = 4000
-"""Samples of the run at lower speed, of which only means are told."""
-
 STEADY = 0.5
 """Coherence from which tilt and offset have a phase worth a number."""
 
 SIGNS = (
-    "A stable cage leaves the torque to balls on races. A whirl shows by its line, and by a torque that "
+    "A stable cage leaves the torque to balls on races. A whirl is heard, and shows by a torque that "
     "grows faster with speed than theirs, towards its square (Lewis and others, 44th AMS 2018)."
 )
 
+ETA = "Damp the races so that eta is this, as at a point of a map [default: that of the study]."
 SINGLE = (
     "A single run is not evidence: another seed may end differently. See `separatrix stability` and "
     "`separatrix rank`."
@@ -60,58 +46,58 @@ SINGLE = (
 class Options:
     """Which run, from what."""
 
-    kick: Annotated[
-        str | float | None,
-        Option('For instance "0.5 m/s" [default: the reference disturbance of the study].', "SPEED"),
-    ] = None
+    kick: Kick = None
     run: Annotated[int, Option("Which run of the ensemble.", "N")] = 0
-    restitution_factor: Annotated[
-        str | float | None,
-        Option(
-            "Damp the races so that eta is this, as at a point of a map [default: that of the study].", "ETA"
-        ),
-    ] = None
+    restitution_factor: Annotated[str | float | None, Option(ETA, "ETA")] = None
 
 
 def compute(study: Study, options: Options) -> SimulationAnswer:
     """Follow one run of the ensemble, by default the first from the reference disturbance."""
-    from separatrix.cage import analyse, settings_for
+    from separatrix.cage import analyse, moving_cage, settings_for
     from separatrix.cage import simulate as follow
     from separatrix.cage.closed_forms import drift_rate_law
     from separatrix.chain.solution import solve
     from separatrix.study.candidates import cage_candidate, require_friction
+    from separatrix.study.study import BallModel
     from separatrix.verbs.cage_answers import SimulationAnswer
-    from separatrix.verbs.parts.cage_of_study import MOST_RUNS, cage_of, extrapolation_notes, kick_speed
+    from separatrix.verbs.parts import cage_of_study as of
     from separatrix.verdict.beyond_models import Moved, beyond_motion
     from separatrix.verdict.crossing import cage_at
     from separatrix.verdict.judgement import transmitted_force
     from separatrix.verdict.reasons import force_limit, outcome_sentence
-    from separatrix.verdict.rig_signs import SLOWER, rig_signs, slower
+    from separatrix.verdict.rig_signs import SLOWER, Followed, lasts, rig_signs, slower
 
-    if not 0 <= options.run <= MOST_RUNS:
-        raise InputError("--run", f"must lie between 0 and {MOST_RUNS}", got=str(options.run))
-    given, eta = None if options.kick is None else kick_speed(options.kick), given_factor(options)
+    of.refuse_outside("--run", options.run, 0, of.MOST_RUNS)
+    given, eta = None if options.kick is None else of.kick_speed(options.kick), given_factor(options)
     solution = solve(study)
     require_friction(study)
-    settings = settings_for(study.stability, cage_of(solution))
+    cage = of.cage_of(solution)
+    settings = settings_for(study.stability, cage)
+    cage = cage if eta is None else cage_at(cage, eta, cage.ball_cage_friction)
     speed = settings.middle_kick if given is None else given
     asked = {name: getattr(settings, name) for name in ("seed", "duration", "ball_scatter")}
 
-    def followed(chain: Solution, kick: float, samples: int) -> tuple[Solution, MovingCage, History]:
-        cage = cage_of(chain)
-        cage = cage if eta is None else cage_at(cage, eta, cage.ball_cage_friction)
-        return chain, cage, follow(cage, kick=kick, run=options.run, samples=samples, **asked)
+    def followed(cage: MovingCage, kick: float, until: float | None = None) -> History:
+        return follow(cage, kick=kick, run=options.run, samples=MOST_SHOWN, until=until, **asked)
 
-    this = followed(solution, speed, MOST_SHOWN)
-    _, cage, history = this
-    is_steady = not study.operation.ramp_time
-    other = followed(slower(solution), SLOWER * speed, FEW) if is_steady else None
+    def grown(chain: Solution, kick: float) -> Followed:
+        cage = of.cage_of(chain)
+        found = followed(cage, kick)
+        if not lasts(found):
+            return chain, cage, found
+        if found.largest_contact_force > force_limit(cage, transmitted_force(chain)):
+            cage = moving_cage(chain, cage.ball_cage_friction, BallModel.FREE)
+        return chain, cage, followed(cage, kick, settings.duration)
+
+    history, signs = followed(cage, speed), None
+    if eta is None and not study.operation.ramp_time:
+        signs = rig_signs(grown(solution, speed), grown(slower(solution), SLOWER * speed))
     found, made_of = force_limit(cage, transmitted_force(solution)), cage_candidate(study)
     limit = found if isfinite(found) else None
     heat = cage.land_friction * history.rubbing_force * history.rubbing_speed
     name = made_of.name if made_of else "The cage"
     moved = Moved(name, history.largest_contact_force, history.largest_offset)
-    notes = *solution.notes, *cage.notes, *extrapolation_notes(solution), *beyond_motion(solution, [moved])
+    notes = *solution.notes, *cage.notes, *of.extrapolation_notes(solution), *beyond_motion(solution, [moved])
     return SimulationAnswer(
         solution=solution,
         cage=cage,
@@ -125,7 +111,7 @@ def compute(study: Study, options: Options) -> SimulationAnswer:
         rubbing_power=heat,
         history=history,
         analysis=analyse(cage, history),
-        signs=rig_signs(this, other) if other else None,
+        signs=signs,
         notes=notes,
     )
 
@@ -141,16 +127,8 @@ def given_factor(options: Options) -> float | None:
     return eta
 
 
-def friction_of_pocket(solution: Solution) -> None:
-    """Refuse a pocket of unknown friction."""
-    from separatrix.study.candidates import require_friction
-
-    require_friction(solution.study)
-
-
 def page(answer: Part) -> Page:
     """Return the page of `simulate`."""
-    clearances = answer.chain.get("clearances")
     return page_of(
         answer,
         Note(f"{answer.outcome}: {answer.outcome_sentence}", "lead"),
@@ -162,7 +140,7 @@ def page(answer: Part) -> Page:
         places_table("pockets", answer, *POCKET, level=Level.REPORT | Level.SHEET, caption=POCKETS),
         Picture("simulation", lambda: _figure(answer), CAPTION),
         View("moving-cage", lambda: _view(answer), "The moving cage: play, turn, zoom."),
-        *(clearance_blocks(clearances) if clearances else []),
+        *clearance_blocks(answer.chain.get("clearances")),
         Note(SINGLE, "caveat"),
     )
 
@@ -231,18 +209,22 @@ def sign_blocks(answer: Part) -> list[Block]:
         return []
     line = "none: the motion does not last"
     if "housing_frequency" in answer:
-        line = fill(answer, "{housing_frequency} in the housing (torque, vibration)")
+        line = fill(answer, "the third octave about {housing_frequency}, with {housing_share} of the power")
     torque = (
         "{bearing_torque}, of it {cage_torque} by pockets and lands; {pocket_share} of the power at pockets"
     )
-    law = f"none: at 0.8 of the speed the same run {answer.slower_outcome}, this one {answer.outcome}"
+    law = f"none: at 0.8 of the speed the same run {answer.slower_outcome}, here it {answer.signs_outcome}"
     if "torque_exponent" in answer:
         law = "{torque_exponent} from 0.8 of the speed ({slower_torque}) on; balls on races {race_exponent}"
     return [
         Heading("Signs on a test rig"),
         facts(
+            (
+                "Balls",
+                f"free, by which this run {answer.signs_outcome}" if answer.signs_with_free_balls else None,
+            ),
             ("Torque of the shaft", fill(answer, torque)),
-            ("Line of the whirl", line),
+            ("Loudest in the housing", line),
             ("Torque goes with speed to the power", fill(answer, law)),
         ),
         Note(SIGNS, level=Level.LONG),
@@ -271,7 +253,7 @@ CAPTION = (
 
 def _figure(answer: Part) -> Figure:
     """Return path and whirl of the centre; offset, forces and in space tilt against time."""
-    from separatrix.verbs.parts import run_panels as panels
+    from separatrix.verbs.parts import run_pictures as panels
 
     rows: list[tuple[Panel, ...]] = [
         (panels.orbit(answer), panels.spectrum(answer)),
@@ -283,18 +265,18 @@ def _figure(answer: Part) -> Figure:
 
 def _view(answer: Part) -> str:
     from separatrix.present.view import page as view
-    from separatrix.verbs.parts.cage_scene import scene
+    from separatrix.verbs.parts.run_pictures import scene
 
     return view(figure_heading(answer), scene(answer))
 
 
 VERB = Verb(
     name="simulate",
-    epilog="An unresolved run states its reason.",
     compute=compute,
     page=page,
+    epilog="An unresolved run states its reason.",
     options=Options,
     needs=("cage",),
     moves_a_cage=True,
-    refusals=lambda study: refused(study, friction_of_pocket, cage_motion),
+    links=("known_friction", "cage_motion"),
 )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from separatrix.ground.document import Part
@@ -9,9 +10,8 @@ from separatrix.present.blocks import Heading, Level, Note, Page, Picture, facts
 from separatrix.present.figure import Figure, Mark, Trace
 from separatrix.verbs.parts.answer_page import figure, page_of
 from separatrix.verbs.parts.chain_blocks import basis_facts
-from separatrix.verbs.parts.curve_blocks import curve_blocks, curve_panel, pocket_friction
 from separatrix.verbs.parts.quantity_text import fill
-from separatrix.verbs.parts.refused import cage_motion, refused
+from separatrix.verbs.parts.verdict_blocks import curve_blocks, curve_panel, pocket_friction
 from separatrix.verbs.verb import NoOptions, Verb
 
 if TYPE_CHECKING:
@@ -26,19 +26,13 @@ def compute(study: Study, _: NoOptions, runner: Runner) -> StabilityAnswer:
     """Critical friction against restitution factor."""
     from separatrix.chain.solution import solve
     from separatrix.verbs.cage_answers import StabilityAnswer
-    from separatrix.verbs.parts.cage_of_study import cage_of, extrapolation_notes
-    from separatrix.verdict.long_jobs import made_into
+    from separatrix.verbs.parts.cage_of_study import answer_of_cage, cage_of, extrapolation_notes
     from separatrix.verdict.stability_curve import stability_curve
 
     solution = solve(study)
-    cage, settings = cage_of(solution), study.stability
-    notes = (*solution.notes, *extrapolation_notes(solution), *cage.notes)
-    return made_into(
-        lambda curve: StabilityAnswer(
-            solution=solution, cage=cage, curve=curve, notes=(*notes, *curve.notes)
-        ),
-        lambda: stability_curve(cage, settings, runner=runner),
-    )
+    cage, notes = cage_of(solution), extrapolation_notes(solution)
+    curve = partial(stability_curve, cage, study.stability, runner=runner)
+    return answer_of_cage(StabilityAnswer, "curve", solution, curve, *notes)
 
 
 def page(answer: Part) -> Page:
@@ -120,5 +114,5 @@ VERB = Verb(
     epilog="Beside the curve: its band, the linear limit, and the critical friction at the bearing's own "
     "restitution factor.",
     keeps_runs=True,
-    refusals=lambda study: refused(study, cage_motion),
+    links=("cage_motion",),
 )

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from functools import partial
+from dataclasses import dataclass, replace
 from itertools import pairwise, product
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -13,19 +13,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 from separatrix.ground.document import Part
 from separatrix.present.blocks import Column, Heading, Note, Page, Picture, Table, facts, text_column
 from separatrix.present.figure import CYCLE, GREY, MARKERS, Across, Axis, Figure, Mark, Panel
+from separatrix.verbs.parts import quantity_text as q
 from separatrix.verbs.parts.answer_page import figure, page_of
-from separatrix.verbs.parts.quantity_text import (
-    all_numbers,
-    at,
-    axis,
-    cell,
-    column,
-    marks,
-    parameter_axis,
-    quantity,
-    show,
-    value_of,
-)
 from separatrix.verbs.verb import Option, Verb
 
 if TYPE_CHECKING:
@@ -43,6 +32,7 @@ JUDGED = (
 )
 """Columns of a table of cases: of the chain alone, and with verdicts or margins."""
 
+CASES = "CSV: parameters in its first row, then a case a row; with time_share a duty cycle."
 SHOWN = 16
 """Cases of the table: of more, the worst."""
 
@@ -52,10 +42,7 @@ class Options:
     """Cases of a sweep, and what is computed of each."""
 
     vary: Annotated[tuple[str, ...], Option("PARAM=LOW..HIGH[unit][:N][:log]; may be repeated.", "AXIS")] = ()
-    cases: Annotated[
-        Path | Sequence[Mapping[str, float]] | None,
-        Option("CSV: parameters in its first row, then a case a row; with time_share a duty cycle.", "FILE"),
-    ] = None
+    cases: Annotated[Path | Sequence[Mapping[str, float]] | None, Option(CASES, "FILE")] = None
     verdicts: Annotated[bool, Option("Run the ensemble of every case, too.")] = False
     margins: Annotated[bool, Option("Compute safety factor or margin of every case, too.")] = False
 
@@ -69,24 +56,18 @@ class Options:
 
 def compute(study: Study, options: Options, runner: Runner) -> Sweep:
     """Chain and, if asked, verdict of many cases of a study."""
-    import contextlib
-    from dataclasses import replace
-
     from separatrix.chain.solution import solve
     from separatrix.ground.errors import SeparatrixError
     from separatrix.verdict.long_jobs import made_into
     from separatrix.verdict.parameter_axes import asked_cases
     from separatrix.verdict.swept_cases import sweep
 
-    asked = asked_cases(options.vary, options.cases)
     solution = solve(study)
     with contextlib.suppress(SeparatrixError):
         _ = solution.clearances  # for their notes
-    chosen = {"verdicts": options.verdicts, "margins": options.margins}
-    return made_into(
-        lambda found: replace(found, notes=solution.notes),
-        lambda: sweep(study, asked, **chosen, runner=runner),
-    )
+    cases = asked_cases(options.vary, options.cases)
+    how: Any = {"runner": runner, "verdicts": options.verdicts, "margins": options.margins}
+    return made_into(lambda found: replace(found, notes=solution.notes), lambda: sweep(study, cases, **how))
 
 
 def page(answer: Part) -> Page:
@@ -98,15 +79,15 @@ def page(answer: Part) -> Page:
         Note(worst_words(answer), "lead"),
         *(Note(f"Case {one.case} was refused: {one.reason}") for one in refused[:1]),
         facts(
-            ("Varied", ", ".join(quantity(one.name).label for one in answer.parameters)),
+            ("Varied", ", ".join(q.quantity(one.name).label for one in answer.parameters)),
             ("Cases", f"{len(answer.cases)}, of which {len(refused)} refused"),
             ("Verdicts", ", ".join(f"{count} {word}" for word, count in sorted(counts.items()))),
-            *((f"Time {quantity(name).label}", cell(duty, name)) for name in TIMES if duty and name in duty),
+            *((f"Time {q.quantity(one).label}", q.cell(duty, one)) for one in TIMES if duty and one in duty),
         ),
         *([Picture("envelope", lambda: envelope_figure(answer), ENVELOPE)] * has(answer, "cage_speed")),
         Heading("Cases"),
         case_table(answer),
-        all_numbers("cases", (), ((one,) for one in answer.cases)),
+        q.all_numbers("cases", (), ((one,) for one in answer.cases)),
     )
 
 
@@ -122,9 +103,12 @@ def has(answer: Part, name: str) -> bool:
 
 def case_words(answer: Part, case: Part) -> str:
     """Return the number of a case with its values."""
-    return (
-        f"case {case.case}: {', '.join(at(one, one.name, case.get(one.name)) for one in answer.parameters)}"
-    )
+    return f"case {case.case}: {values_words(answer.parameters, case)}"
+
+
+def values_words(parameters: Sequence[Part], case: Part) -> str:
+    """Return parameters with their values in a case."""
+    return ", ".join(q.at(one, one.name, case.get(one.name)) for one in parameters)
 
 
 def worst_case(answer: Part) -> Part | None:
@@ -144,7 +128,7 @@ def worst_words(answer: Part) -> str:
         return lacks if has(answer, "cage_speed") else "No case has an answer."
     name = worst.quantity
     first = next(one for one in answer.cases if one.case == worst.case)
-    number = f"{quantity(name).label}, {show(first, name)}"
+    number = f"{q.quantity(name).label}, {q.show(first, name)}"
     more = "; --margins or --verdicts compare the stability" if name == ETA else ""
     if worst_case(answer) is None:
         return f"No case is the worst: all {worst.alike} with an answer have the same {number}{more}."
@@ -166,12 +150,11 @@ def case_table(answer: Part) -> Table:
         caption = f"The worst {SHOWN} of {len(answer.cases)} cases; sweep.json and the workbook have all."
 
     def of(one: Part) -> Column:
-        known = quantity(one.name)
-        return Column(known.head or known.label, lambda case: value_of(one, one.name, case.get(one.name)))
+        return Column(q.head_of(one.name), lambda case: q.value_of(one, one.name, case.get(one.name)))
 
     names = JUDGED if answer.margins or answer.verdicts else SOLVED
     columns = [text_column("case", lambda case: case.case), *map(of, answer.parameters)]
-    columns += [column(name) for name in names if has(answer, name)]
+    columns += [q.column(name) for name in names if has(answer, name)]
     if answer.verdicts or any(map(is_refused, answer.cases)):
         words = text_column("verdict", lambda case: "refused" if is_refused(case) else case.verdict or "-")
         columns.append(words)
@@ -208,23 +191,22 @@ def envelope_figure(answer: Part) -> Figure:
     first, *others = answer.parameters
     curves: dict[str, list[Part]] = {}
     for case in answer.cases:
-        key = ", ".join(at(one, one.name, case.get(one.name)) for one in others)
-        curves.setdefault(key, []).append(case)
+        curves.setdefault(values_words(others, case), []).append(case)
     ways = [[case.get(first.name) for case in each] for each in curves.values()]
     name, is_line = first.name, all(way[1:] and all(a < b for a, b in pairwise(way)) for way in ways)
     if len(curves) > len(CYCLE) or not is_line or has(answer, "time_share"):
         name, curves, is_line = "case", {"": answer.cases}, False
         x = Axis(label="case [-]", low=-0.6, high=len(answer.cases) - 0.4)
     else:
-        x = parameter_axis(name, first.get("unit") or "-", sorted({one for way in ways for one in way}))
+        x = q.parameter_axis(name, first.get("unit") or "-", sorted({one for way in ways for one in way}))
     panels = []
     for title, names in PANELS.items():
         known = [one for one in names if has(answer, one)]
         if not known or (title == FREQUENCIES and len(curves) > 1):
             continue
         low, high = ENDS.get(known[0], (None, None))
-        y = axis(known[0], "-", [], low=low, high=high, is_log=low is None)
-        y = axis(known[0], "Hz", [], label="frequency", is_log=True) if title == FREQUENCIES else y
+        y = q.axis(known[0], "-", [], low=low, high=high, is_log=low is None)
+        y = q.axis(known[0], "Hz", [], label="frequency", is_log=True) if title == FREQUENCIES else y
         found = (*_curves(answer, curves, known, name, is_line=is_line), *_upright(answer, name))
         title += "; dashed: its threshold" * ("restitution_threshold" in known)
         panels.append(Panel(title=title, x=x, y=y, marks=found))
@@ -240,16 +222,16 @@ def _curves(
         rows = cases
         if name == "orbit_frequency":  # its sign is the direction
             rows = [Part({**one.values, name: abs(one.get(name) or 0.0) or None}, one.units) for one in cases]
-        label = quantity(name).label if names[1:] else ""
+        label = q.quantity(name).label if names[1:] else ""
         look: dict[str, Any] = {"colour": CYCLE[i if key else j], "name": "" if key and j else key or label}
         look |= {"line": LINES[j]} if is_line else {}
         look |= {} if is_line and LINES[j] and len(cases) > SHOWN else {"marker": MARKERS[j]}
-        yield marks(rows, x, name, hover=partial(_hover, answer, name), size=3.0, **look)
+
+        def hover(case: Part, name: str = name) -> str:
+            return f"{case_words(answer, case)}: {q.quantity(name).label} {q.show(case, name)}"
+
+        yield q.marks(rows, x, name, hover=hover, size=3.0, **look)
     yield from (Across(at=one, axis="y", line=":", colour=GREY) for one in BOUNDS.get(names[0], ()))
-
-
-def _hover(answer: Part, what: str, case: Part) -> str:
-    return f"{case_words(answer, case)}: {quantity(what).label} {show(case, what)}"
 
 
 def _upright(answer: Part, x: str) -> Iterator[Mark]:
@@ -264,9 +246,9 @@ def _upright(answer: Part, x: str) -> Iterator[Mark]:
 
 VERB = Verb(
     name="sweep",
-    options=Options,
     compute=compute,
     page=page,
+    options=Options,
     moves_a_cage=True,
     epilog="Every value of one --vary goes with every value of the others. A case that is refused is a row "
     "with its reason. The table is sweep.xlsx and sweep.nc in the folder of the answer: "

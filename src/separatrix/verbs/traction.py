@@ -6,22 +6,10 @@ from itertools import cycle
 from typing import TYPE_CHECKING
 
 from separatrix.ground.document import Part
+from separatrix.present import figure as fig
 from separatrix.present.blocks import Equation, Heading, Level, Note, Page, Picture, Table
-from separatrix.present.figure import (
-    BLUE,
-    SEQUENCE,
-    VERMILION,
-    Across,
-    Axis,
-    Band,
-    Figure,
-    Mark,
-    Panel,
-    Trace,
-)
 from separatrix.verbs.parts.answer_page import figure, page_of
 from separatrix.verbs.parts.quantity_text import axis, by_race, fill, number_of, place_column, show
-from separatrix.verbs.parts.refused import refused, rolling
 from separatrix.verbs.verb import NoOptions, Verb
 
 if TYPE_CHECKING:
@@ -95,7 +83,7 @@ def curve_table(part: Part, race: str) -> Table:
     return Table(f"curves, {race} race", tuple(columns), rows, level=Level.SHEET)
 
 
-def curves_figure(answer: Part) -> Figure:
+def curves_figure(answer: Part) -> fig.Figure:
     """Return the curves of both races, and below them the shear in a strip of each."""
     races = answer.inner, answer.outer
     high = 1.12 * max(abs(one) for part in races for one in part.traction_coefficient)
@@ -105,19 +93,19 @@ def curves_figure(answer: Part) -> Figure:
     return figure(answer, panels, (shear_panel(answer),), height=2.6)
 
 
-def curves_panel(part: Part, title: str, y: Axis) -> Panel:
+def curves_panel(part: Part, title: str, y: fig.Axis) -> fig.Panel:
     """Return the curves of one race."""
     x, own = part.creep_increment, part.traction_coefficient
-    marks: list[Mark] = [Across(at=0.0, axis=way, colour="#c8c8c8") for way in ("x", "y")]
-    for colour, one in zip(cycle(SEQUENCE), part.by_spin_roll_ratio, strict=False):
+    marks: list[fig.Mark] = [fig.Across(at=0.0, axis=way, colour="#c8c8c8") for way in ("x", "y")]
+    for colour, one in zip(cycle(fig.SEQUENCE), part.by_spin_roll_ratio, strict=False):
         name = f"ratio {number_of(one, 'ratio', abs(one.spin_roll_ratio))}, by strips"
-        marks.append(Trace(x=x, y=one.traction_coefficient, colour=colour, width=0.9, name=name))
+        marks.append(fig.Trace(x=x, y=one.traction_coefficient, colour=colour, width=0.9, name=name))
     rise = 0.85 * max(map(abs, own))
     run = rise / part.slope
-    marks.append(Trace(x=x, y=own, width=1.8, name="this bearing"))
+    marks.append(fig.Trace(x=x, y=own, width=1.8, name="this bearing"))
     tangent = "slope $alpha$ at the origin"
-    marks.append(Trace(x=[-run, run], y=[-rise, rise], line="--", width=0.9, name=tangent))
-    return Panel(
+    marks.append(fig.Trace(x=[-run, run], y=[-rise, rise], line="--", width=0.9, name=tangent))
+    return fig.Panel(
         title=fill(part, title + ": ratio {spin_roll_ratio}; $alpha$ = {slope}"),
         x=axis("creep_increment", part.unit("creep_increment"), [], low=x[0], high=x[-1]),
         y=y,
@@ -125,10 +113,10 @@ def curves_panel(part: Part, title: str, y: Axis) -> Panel:
     )
 
 
-def shear_panel(answer: Part) -> Panel:
+def shear_panel(answer: Part) -> fig.Panel:
     """Return the shear in a strip of each contact, with what friction bears."""
-    marks, along, every = list[Mark](), list[float](), list[float]()
-    for race, colour, line in (("inner", BLUE, "-"), ("outer", VERMILION, "--")):
+    marks, along, every = list[fig.Mark](), list[float](), list[float]()
+    for race, colour, line in (("inner", fig.BLUE, "-"), ("outer", fig.VERMILION, "--")):
         field = getattr(answer, race).shear
         strip = len(field.across) - 1 - (len(field.across) - 1) // 4
         x, bound = field.along[strip], field.bound[strip]
@@ -136,12 +124,12 @@ def shear_panel(answer: Part) -> Panel:
             number_of(field, name, getattr(field, name)[strip]) for name in ("across", "creep_ratio")
         )
         name = f"{race} race at y = {place}, $xi$ = {creep}"
-        marks.append(Band(x=x, low=[-one for one in bound], high=bound, colour=colour, opacity=0.12))
-        marks.append(Trace(x=x, y=field.shear[strip], colour=colour, line=line, name=name))
+        marks.append(fig.Band(x=x, low=[-one for one in bound], high=bound, colour=colour, opacity=0.12))
+        marks.append(fig.Trace(x=x, y=field.shear[strip], colour=colour, line=line, name=name))
         along += x
         every += bound
     field, high = answer.inner.shear, 1.2 * max(every)
-    return Panel(
+    return fig.Panel(
         title="c  Shear in free rolling, within $f_BT$ $p$",
         x=axis("along", field.unit("along"), along),
         y=axis("shear", field.unit("shear"), [high], low=-high, high=high),
@@ -149,4 +137,4 @@ def shear_panel(answer: Part) -> Panel:
     )
 
 
-VERB = Verb(name="traction", compute=compute, page=page, refusals=lambda study: refused(study, rolling))
+VERB = Verb(name="traction", compute=compute, page=page, links=("rolling",))

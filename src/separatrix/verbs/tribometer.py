@@ -2,15 +2,25 @@
 
 from __future__ import annotations
 
+import contextlib
+import math
+import os
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from operator import attrgetter
 from pathlib import Path
+from statistics import fmean, stdev
 from typing import TYPE_CHECKING, Annotated, Any
 
+from separatrix import __version__
 from separatrix.ground.document import Document, Part
+from separatrix.ground.errors import InputError
+from separatrix.ground.files import refuse_existing, staged, writable_folder
+from separatrix.ground.plain_data import Group, Leaf, plain, shape, units_of
 from separatrix.ground.quantity import ABSENT, Estimate, Quantity, alone
+from separatrix.ground.units import shown
+from separatrix.present import figure as fig
 from separatrix.present.blocks import (
     Block,
     Cell,
@@ -25,19 +35,6 @@ from separatrix.present.blocks import (
     grouped,
     text_column,
 )
-from separatrix.present.figure import (
-    BLUE,
-    GREEN,
-    GREY,
-    SKY,
-    VERMILION,
-    Across,
-    Axis,
-    Band,
-    Figure,
-    Panel,
-    Trace,
-)
 from separatrix.verbs.parts.quantity_text import column, fill, itself, known_columns, quantity
 from separatrix.verbs.verb import Option, Tool
 
@@ -51,17 +48,11 @@ if TYPE_CHECKING:
 class Options:
     """What `tribometer` takes."""
 
-    files: Annotated[
-        tuple[Path, ...],
-        Option("Raw tribometer logs, or folders of them; the format is detected.", "FILES...", True),
-    ]
-    column_map: Annotated[
-        Path | None, Option("Column map (TOML) for what the logs do not state.", "FILE", flag="--map")
-    ] = None
-    run_in: Annotated[
-        str | None, Option('Where running-in ends, for instance "200 m" [default: found].', "END")
-    ] = None
+    files: Annotated[tuple[Path, ...], Option("Logs, or folders; the format is detected.", "FILES...", True)]
+    column_map: Annotated[Path | None, Option("Column map (TOML) of the logs.", "FILE", flag="--map")] = None
+    run_in: Annotated[str | None, Option('Where running-in ends: "200 m" [default: found].', "END")] = None
     join: Annotated[bool, Option("The logs of one folder are strokes or parts of one test.")] = False
+    out: Annotated[Path | None, Option("Friction file (.toml) to write [default: none].", "FILE")] = None
 
 
 UNITS = {"time": ("s", "1/s"), "distance": ("m", "1/m"), "cycles": ("-", "-")}
@@ -99,27 +90,40 @@ def reduced(
 
     if options.run_in is not None:
         place(options.run_in, "--run-in")
-    return tribometer(
-        options.files,
-        column_map=options.column_map,
-        run_in=options.run_in,
-        join=options.join,
-        complete=complete,
-        jobs=jobs,
-        progress=progress,
-    )
+    how: dict[str, Any] = {name: getattr(options, name) for name in ("column_map", "run_in", "join")}
+    return tribometer(options.files, **how, complete=complete, jobs=jobs, progress=progress)
 
 
 def compute(options: Options, jobs: int = 1, progress: Progress | None = None) -> Document:
-    """Friction of each test, and of each material over all of its tests."""
-    return document(reduced(options, jobs, progress))
+    """Friction of each test, and of each material over all of its tests; writes its friction file, if asked.
+
+    A log whose columns are not known gets a draft of a column map beside it.
+    """
+    from separatrix.friction.friction_file import friction_text
+    from separatrix.friction.logs import UnmappedError
+
+    out = options.out
+    with contextlib.ExitStack() as stack:
+        if out is not None:
+            if out.suffix != ".toml" or os.path.isdir(out):
+                cure = 'Name a file like "friction.toml".'
+                raise InputError("--out", "must name a file that ends in .toml", shown(str(out)), cure)
+            refuse_existing(out)
+            stack.enter_context(writable_folder(out.parent))
+        try:
+            found = reduced(options, jobs, progress, complete=out is not None)
+        except UnmappedError as error:
+            raise error.with_draft_written() from None
+        if out is not None and found.friction_tests is not None:
+            with staged(out.parent) as stage:
+                (stage / out.name).write_text(friction_text(found.friction_tests), encoding="utf-8")
+                refuse_existing(out)  # it may have been made since the first check
+    return document(found, None if out is None else str(out))
 
 
 def document(found: ReducedLogs, written: str | None = None) -> Document:
     """Return the answer as plain data, in SI units; `written` is the friction file made from it."""
-    from separatrix import __version__
     from separatrix.friction.friction_file import CONDITIONS, PRODUCT
-    from separatrix.ground.plain_data import plain, units_of
 
     fit = found.fit
     nodes = [_test(one) for one in found.reductions]
@@ -140,19 +144,18 @@ def document(found: ReducedLogs, written: str | None = None) -> Document:
 def _test(one: Reduction) -> Any:
     """Return a test as a node: its numbers, their interval, and its course."""
     from separatrix.friction.reduction import course
-    from separatrix.ground.plain_data import Group, Leaf, shape
 
     low, high = one.test.interval
     ends = {"friction_low": Leaf(low, "-"), "friction_high": Leaf(high, "-")}
-    return Group(shape(one.test) | ends | {"course": Group(shape(course(one)))})
+    node = shape(one.test)
+    del node["wear"]
+    return Group(node | shape(one.test.wear) | ends | {"course": Group(shape(course(one)))})
 
 
 OF_A_LOG = ("source", "checksum", "format", "rows", "missing", "columns", "notes")
 
 
 def _fit(material: str, environment: str, one: MaterialFit) -> Document:
-    from separatrix.ground.plain_data import plain
-
     at = one.at()  # the centre of its tested conditions
     return {
         "material": material,
@@ -222,17 +225,31 @@ def _lead(answer: Part, tests: Sequence[Part]) -> Iterator[str]:
     """Yield the answer: friction of each material, or of the tests."""
     words = "{standard_error}, scatter of a new sample {standard_deviation}"
     for one in answer.fits or ():
-        friction = f"{_place(one)}: friction {_friction(one).text} from {_count(one.tests, 'test')}"
-        yield f"{friction} (standard error {fill(one, words)})."
+        of = f"{one.material}, {one.environment}: friction {_friction(one).text}"
+        yield f"{of} from {_count(one.tests, 'test')} (standard error {fill(one, words)})."
     if not answer.fits and len(tests) == 1:
         yield f"{tests[0].source}: {_summary(tests[0])}."
     elif not answer.fits:
         low, high = (alone(of(one.friction for one in tests), FRICTION, "-") for of in (min, max))
         yield f"Steady friction of the tests lies between {low} and {high}."
+    yield from _worn(tests)
 
 
-def _place(fit: Part) -> str:
-    return f"{fit.material}, {fit.environment}"
+def _worn(tests: Sequence[Part]) -> Iterator[str]:
+    """Yield the wear coefficient of each material whose wear was logged."""
+    each: dict[str, list[Part]] = {}
+    for one in tests:
+        if "wear_coefficient" in one:
+            each.setdefault(one.conditions.get("material") or "the sample", []).append(one)
+    known = quantity("wear_coefficient")
+    for name, worn in each.items():
+        logs = [math.log(one.wear_coefficient) for one in worn]
+        words = f"Wear coefficient of {name}: {alone(math.exp(fmean(logs)), known, 'm3/(N m)')}"
+        if len(worn) == 1:
+            yield fill(worn[0], f"{words} (standard error {{wear_error}}).")
+        else:
+            times = math.exp(1.96 * stdev(logs))
+            yield f"{words}, a factor of {times:.2g} either way for 95 % of single tests ({len(worn)} tests)."
 
 
 def _summary(test: Part) -> str:
@@ -246,9 +263,6 @@ def _friction(one: Part) -> Cell:
 
 
 def _table(tests: Sequence[Part], flags: Sequence[str]) -> Table:
-    def numbers(one: Part) -> str:
-        return ", ".join(str(flags.index(flag) + 1) for flag in one.flags) or ABSENT
-
     of = attrgetter("conditions")
     columns = (
         TEST,
@@ -256,7 +270,7 @@ def _table(tests: Sequence[Part], flags: Sequence[str]) -> Table:
         *(column(name, of=of, head=_plain(name)) for name in ("slip_speed", "pressure")),
         Column("friction", _friction),
         Column("running-in ends", lambda one: _along(one, "run_in_end")),
-        text_column("notes", numbers),
+        text_column("notes", lambda one: ", ".join(str(flags.index(at) + 1) for at in one.flags) or ABSENT),
     )
     return Table("tests", known_columns(columns, tests), tuple(tests), LEGEND)
 
@@ -269,12 +283,15 @@ PAIR = ("material", "medium", "counterface")
 TEST = text_column("test", lambda one: one.source)
 
 
+COUNTED = ("steady_rows", "rows", "cycles", "wear_coefficient", "wear_error")
+
+
 def _numbers(tests: Sequence[Part]) -> Table:
     """Return what the friction of each test was made from, and what else its log shows."""
     names = ("standard_error", "degrees_of_freedom", "standard_deviation", "effective_count", "drift_rate")
     until = Column("steady until", lambda one: _along(one, "steady_end"))
     heat = column("temperature", of=attrgetter("conditions"))
-    columns = TEST, heat, *map(column, names), until, *map(column, ("steady_rows", "rows", "cycles"))
+    columns = TEST, heat, *map(column, names), until, *map(column, COUNTED)
     return Table("numbers", known_columns(columns, tests), tuple(tests), NUMBERS, Level.LONG)
 
 
@@ -289,7 +306,8 @@ def _fits(answer: Part) -> Iterator[Block]:
     )
     yield Table("materials", columns, tuple(answer.fits), FIT_LEGEND)
     for one in answer.fits:
-        yield from (Note(f"{_place(one)}: {words}.") for words in (*_slopes(one), *one.notes))
+        place = f"{one.material}, {one.environment}"
+        yield from (Note(f"{place}: {words}.") for words in (*_slopes(one), *one.notes))
 
 
 def _slopes(fit: Part) -> Iterator[str]:
@@ -338,38 +356,39 @@ def file_name(source: str) -> str:
     return "-".join(part for part in plain.split("-") if part).strip(".-")[:100] or "test"
 
 
-def _figure(test: Part) -> Figure:
+def _figure(test: Part) -> fig.Figure:
     """Return friction along a test, the ends of its steady part, the means of spans and of all of it."""
     course, mean, ends = test.course, test.friction, (test.run_in_end, test.steady_end)
     low, high, drift = test.friction_low, test.friction_high, test.drift_rate * (ends[1] - ends[0]) / 2
     size, symbol = _along(test, "steady_end").scale
-    name = {"time": "time", "distance": "sliding distance", "cycles": "cycles"}[test.run_in_axis]
+    name = "sliding distance" if test.run_in_axis == "distance" else test.run_in_axis
     last = max(course.along[-1], test.steady_end)
     look: dict[str, Any] = {"line": "", "marker": "o", "size": 1.2, "name": "means of spans"}
-    panel = Panel(
+    panel = fig.Panel(
         title="Friction along the test",
-        x=Axis(label=f"{name} [{symbol or '-'}]", size=size, low=course.along[0], high=last),
-        y=Axis(label="friction [-]"),
+        x=fig.Axis(label=f"{name} [{symbol or '-'}]", size=size, low=course.along[0], high=last),
+        y=fig.Axis(label="friction [-]"),
         marks=(
-            *(Across(at=one, colour=GREY, line="--", name="ends of the steady part") for one in ends),
-            Band(x=course.along, low=course.low, high=course.high, colour=SKY, name="range of rows"),
-            Trace(x=course.along, y=course.mean, colour=BLUE, width=0.6),
-            Trace(x=course.span_along, y=course.span_mean, colour=BLUE, **look),
-            Band(x=ends, low=(low, low), high=(high, high), colour=VERMILION, opacity=0.2),
-            Trace(x=ends, y=(mean, mean), colour=VERMILION, name="steady mean, 95 % interval"),
-            Trace(x=ends, y=(mean - drift, mean + drift), colour=GREEN, line="--", width=0.9, name="drift"),
+            *(fig.Across(at=one, colour=fig.GREY, line="--", name="ends of the steady part") for one in ends),
+            fig.Band(x=course.along, low=course.low, high=course.high, colour=fig.SKY, name="range of rows"),
+            fig.Trace(x=course.along, y=course.mean, colour=fig.BLUE, width=0.6),
+            fig.Trace(x=course.span_along, y=course.span_mean, colour=fig.BLUE, **look),
+            fig.Band(x=ends, low=(low, low), high=(high, high), colour=fig.VERMILION, opacity=0.2),
+            fig.Trace(x=ends, y=(mean, mean), colour=fig.VERMILION, name="steady mean, 95 % interval"),
+            fig.Trace(x=ends, y=(mean - drift, mean + drift), colour=fig.GREEN, line="--", name="drift"),
         ),
     )
-    return Figure(rows=((panel,),), heading=(test.source[:120], _summary(test)), height=2.0)
+    return fig.Figure(rows=((panel,),), heading=(test.source[:120], _summary(test)), height=2.0)
 
 
 VERB = Tool(
     name="tribometer",
-    epilog="What is read is shown before it is trusted: without --out nothing is written. A file that exists "
-    "is never overwritten.",
     compute=compute,
     page=page,
+    epilog="What is read is shown before it is trusted: without --out nothing is written. A file that exists "
+    "is never overwritten.",
     options=Options,
     rows="tests",
     takes_time=True,
+    pictures=lambda options: options.out and options.out.with_name(f"{options.out.stem}-plots"),
 )

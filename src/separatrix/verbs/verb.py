@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple, get_args, get_origin, get_type_hints
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple, get_args, get_origin, get_type_hints
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterator
 
     from separatrix.ground.document import Part
     from separatrix.present.blocks import Page
@@ -19,14 +19,21 @@ class Option(NamedTuple):
     """What a door shows of an option: its line of help, and what stands for its value.
 
     `is_argument` says that it has a place on the command line instead of a name; one without a default must
-    be there. `flag` is its name there if that is not the name of its field.
+    be there. `flag` is its name there if that is not the name of its field. A whole number with a `most`
+    lies between 1 and that.
     """
 
     help: str
     metavar: str = ""
     is_argument: bool = False
     flag: str = ""
+    most: int = 0
 
+
+KICK = 'Initial disturbance, for instance "0.5 m/s" [default: the reference of the study].'
+Kick = Annotated[str | float | None, Option(KICK, "SPEED")]
+Samples = Annotated[int, Option("Bearings drawn, a power of two.", "N")]
+"""Options of several verbs."""
 
 Shown = dict[str, tuple[Any, Option, Any]]
 """Type, `Option` and default of each option, by name; `dataclasses.MISSING` of one without a default."""
@@ -64,7 +71,8 @@ class Tool:
     options and, where it `takes_time`, the number of threads and what hears of its progress; it returns
     its document, and `page` makes the page of that. `rows` is the key of its main list, `folder` the usual
     place of its files, empty for one that writes none; one that `writes_data` writes more than its document
-    and its text. `help` is its line of help if that is not in `TOOLS`.
+    and its text. `help` is its line of help if that is not in `TOOLS`. One with `pictures` writes these
+    alone, into the folder that this returns for its options.
     """
 
     name: str
@@ -77,6 +85,7 @@ class Tool:
     rows: str = ""
     folder: str = ""
     writes_data: bool = True
+    pictures: Callable[[Any], Path | None] | None = None
 
     def shown_options(self) -> Shown:
         """Return what a door shows of each option."""
@@ -90,11 +99,18 @@ class Verb(Tool):
     `compute` takes the study, the options and, of a verb that keeps runs, a `Runner`, and returns its record;
     `page` makes the page of its document. `needs` are sections of a study that may be left out but not here.
     `keeps_runs` is for an answer whose finished runs are kept in its folder, and that may be made on a
-    cluster. `moves_a_cage` is for one whose model may be chosen. `refusals` yields, in a second, what the
-    verb would refuse of a study or take long for, a sentence each.
+    cluster. `moves_a_cage` is for one whose model may be chosen. `links` are functions of `cage_of_study`
+    that refuse what the verb would refuse.
     """
 
     needs: tuple[str, ...] = ()
     moves_a_cage: bool = False
     keeps_runs: bool = False
-    refusals: Callable[[Study], Iterable[str]] = lambda study: ()  # noqa: ARG005
+    links: tuple[str, ...] = ()
+
+    def refusals(self, study: Study) -> Iterator[str]:
+        """Yield, in a second, what the verb would refuse of a study, a sentence each."""
+        if self.links:
+            from separatrix.verbs.parts import cage_of_study
+
+            yield from cage_of_study.refused(study, *(getattr(cage_of_study, one) for one in self.links))

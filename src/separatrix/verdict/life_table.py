@@ -52,6 +52,7 @@ from separatrix.verdict.wear_life import (
     course,
     driven_by,
     lives,
+    steady_coverage,
     work_done,
 )
 
@@ -426,6 +427,7 @@ def _life(
     """Lead the draws along the tables, and say what comes of them."""
     found = course(phases, worn, revolutions / speed)
     life = lives(found)
+    calm, whirling = steady_coverage(phases, worn)
     ends = np.isfinite(life)
     moved = np.stack(causes(found, phases, worn, life))
     most = np.where(ends & (moved.max(axis=0) > 0.0), moved.argmax(axis=0), -1)
@@ -455,6 +457,8 @@ def _life(
         pocket_opened=shares[1],
         friction_risen=shares[2],
         reservoir_empty=float(np.mean(found.volume[-1] >= worn.reservoir)),
+        coverage_calm=float(np.median(calm)),
+        coverage_whirling=float(np.median(whirling)),
         film_sustained=float(np.mean(found.kept[-1] >= 0.5)),
         course=tuple(_rows(found, speed)),
         drivers=driven_by(inputs, np.minimum(life, 10.0 * revolutions / speed)),

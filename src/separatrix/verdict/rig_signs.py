@@ -13,10 +13,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from separatrix.cage import Cause, History, MovingCage, RunOutcome
-from separatrix.cage.course import FEWEST
 from separatrix.chain.heat_balance import HeatBalance, heat_balance
 from separatrix.chain.solution import Solution
 from separatrix.ground.units import Hertz, NewtonMetre, RadianPerSecond, Ratio, Watt
+
+KILOHERTZ: Hertz = 1000.0
+"""Middle of a third octave."""
 
 SLOWER: Ratio = 0.8
 """Share of the speeds of the second run, for the exponent of the torque."""
@@ -33,7 +35,10 @@ class RigSigns:
     pocket_heat: Watt  # of friction in all pockets at the end of the run
     pocket_share: Ratio  # of it in all power that the shaft gives
     housing_frequency: Hertz | None
-    """Highest line of the speed of the cage's centre, seen from the housing; null without a whirl."""
+    """Middle of the third octave with most of a whirl's motion, in the housing; null without a whirl."""
+    housing_share: Ratio | None  # of its power that lies there: a line where it is most
+    signs_outcome: RunOutcome  # of the run that these signs are of
+    signs_with_free_balls: bool  # whether its balls are free, since its forces exceed what the races hold
     slower_outcome: RunOutcome  # of the same run where all speeds are 0.8 of these
     slower_torque: NewtonMetre  # of that run
     torque_exponent: Ratio | None  # of torque against speed between both; null where one of them whirls alone
@@ -58,15 +63,19 @@ def slower(solution: Solution) -> Solution:
 
 
 def rig_signs(this: Followed, other: Followed) -> RigSigns:
-    """Signs of a run; `other` is the same of the `slower` chain."""
-    (torque, of_cage, pockets, heat), (less, *_) = _torque(*this), _torque(*other)
+    """Signs of a run, one that lasts followed until it has grown; `other` is that of the `slower` chain."""
+    (torque, of_cage, pockets, heat), (less, *_) = shaft_torque(*this), shaft_torque(*other)
     _, cage, history = this
+    line, share = loudest(cage, history) if lasts(history) else (None, None)
     return RigSigns(
         bearing_torque=torque,
         cage_torque=of_cage,
         pocket_heat=pockets,
         pocket_share=pockets / (torque * _ring_speed(this[0])),
-        housing_frequency=housing_line(cage, history) if lasts(history) else None,
+        housing_frequency=line,
+        housing_share=share,
+        signs_outcome=history.outcome,
+        signs_with_free_balls=cage.free_ball is not None,
         slower_outcome=other[2].outcome,
         slower_torque=less,
         torque_exponent=_exponent(torque, less) if lasts(history) == lasts(other[2]) else None,
@@ -75,27 +84,40 @@ def rig_signs(this: Followed, other: Followed) -> RigSigns:
     )
 
 
-def housing_line(cage: MovingCage, history: History) -> Hertz:
-    """Frequency of the highest line in the spectrum of the centre's velocity, seen from the housing."""
-    here = (history.time >= history.judged_from) & (history.time <= history.followed)
-    here = here if here.sum() >= FEWEST else np.ones(here.size, dtype=bool)
+def loudest(cage: MovingCage, history: History) -> tuple[Hertz, Ratio]:
+    """Middle of the third octave with most of the centre's motion, seen from the housing, and its share.
+
+    Of the power of the velocity in the second half of the run, when a whirl has grown.
+    """
+    here = history.time >= 0.5 * history.time[-1]
     time, turn = history.time[here], 1j * cage.cage_speed
     place, velocity = (one[here] @ np.array([1.0, 1.0j]) for one in (history.position, history.velocity))
     seen = (velocity + turn * place) * np.exp(turn * time)
-    lines = np.abs(np.fft.fft((seen - seen.mean()) * np.hanning(time.size)))
-    return float(abs(np.fft.fftfreq(time.size, time[1] - time[0])[lines.argmax()]))
+    power = np.abs(np.fft.fft((seen - seen.mean()) * np.hanning(time.size))) ** 2
+    frequency = np.abs(np.fft.fftfreq(time.size, time[1] - time[0]))
+    bands = np.round(3.0 * np.log2(np.maximum(frequency, 1.0) / KILOHERTZ)).astype(int)
+    each, place_of = np.unique(bands, return_inverse=True)
+    powers = np.bincount(place_of, power)
+    most = int(powers.argmax())
+    return float(KILOHERTZ * 2.0 ** (each[most] / 3.0)), float(powers[most] / power.sum())
 
 
 def _exponent(torque: NewtonMetre, less: NewtonMetre) -> Ratio:
     return math.log(torque / less) / -math.log(SLOWER)
 
 
-def _torque(
+def shaft_torque(
     solution: Solution, cage: MovingCage, history: History
 ) -> tuple[NewtonMetre, NewtonMetre, Watt, HeatBalance | None]:
     """Torque of the shaft, the cage's part of it, heat of the pockets, balance with the fluid if any."""
-    pockets = cage.ball_cage_friction * history.pocket_sliding
-    land = cage.land_friction * history.rubbing_force * history.rubbing_speed
+    pressed, speed = history.pocket_sliding, history.rubbing_speed
+    force = history.rubbing_force
+    if lasts(history):  # means of the whole run: that by which it was judged has hardly begun to whirl
+        pressed = float(history.pocket_rubbing.sum() / history.time[-1])
+        force = float(history.land_force.mean())
+        radius = cage.land_radius or cage.pitch_radius
+        speed = speed or abs(cage.guiding_ring_speed - cage.cage_speed) * radius
+    pockets, land = cage.ball_cage_friction * pressed, cage.land_friction * force * speed
     of_cage = (pockets + land) / _ring_speed(solution)
     heat = heat_balance(solution.study, solution.bearing, pocket_power=pockets, land_power=land)
     own = solution.bearing.equilibrium.friction_torque + of_cage

@@ -131,6 +131,11 @@ class StabilityMap:
     ball_scatter: Ratio  # initial lead or lag of the balls, over half the pocket clearance
     complete: bool  # false if an interrupt left points out
 
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Where chains of its points leave the range of a model, a sentence each."""
+        return tuple(note for point in self.points for note in point.notes)
+
 
 Place = tuple[int, int]  # column and row
 

@@ -35,6 +35,7 @@ HALF: Ratio = 0.5
 """Probability of a whirl from which a cage counts as unstable."""
 
 LEAST: Ratio = 1e-9
+LEAST_WEAR = 1e-300
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -226,6 +227,22 @@ def _state(phases: Sequence[Phase], worn: Worn, films: Sequence[Array], volume: 
     return [np.array(unstable)[worst, each], np.array(races)[worst, each], pocket, clearance, worst, sliding]
 
 
+def steady_coverage(phases: Sequence[Phase], worn: Worn) -> tuple[Array, Array]:
+    """Coverage at which deposit balances wear on the faster track, of a calm and of a whirling cage, by draw.
+
+    The fixed points of a film: 1 where it grows instead. Work of the pockets is that of a new bearing.
+    """
+    wear = worn.film_wear * max(done.max() for done in work_done(phases))
+    area = min(one.bearing.area for one in phases)
+    place = worn.film_friction, np.full(wear.size, phases[0].bearing.clearance)
+    found = []
+    for name in ("calm_sliding", "whirl_sliding"):
+        sliding = sum((one.share * one.table.at(*place)[name] for one in phases), np.zeros(wear.size))
+        deposit = worn.transferred * worn.cage_wear * sliding / area
+        found.append(np.where(deposit < wear, deposit / np.maximum(wear, LEAST_WEAR), 1.0))
+    return found[0], found[1]
+
+
 def lives(found: Course) -> Array:
     """Time at which each draw becomes unstable, shape (draw,) [s]: 0 from the start, infinite never."""
     unstable = np.maximum.accumulate(found.probability_unstable, axis=0) >= HALF
@@ -331,6 +348,8 @@ class Life:
     pocket_opened: Ratio  # mostly because the pockets have opened
     friction_risen: Ratio  # mostly because the friction of worn pockets has risen
     reservoir_empty: Ratio  # share of all draws whose reservoir is empty at the horizon
+    coverage_calm: Ratio  # of the faster track, at which deposit by a calm cage balances wear; median
+    coverage_whirling: Ratio  # the same by a cage that whirls; 1 where the film grows
     film_sustained: Ratio  # share of the draws in which deposit keeps up at least half of the coverage
     course: Annotated[tuple[LifeRow, ...], Rows("time", "course_")]  # the draws in the course of time
     drivers: tuple[Driver, ...]  # inputs that the life follows, the strongest first

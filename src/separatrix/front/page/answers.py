@@ -1,35 +1,37 @@
-"""Routes of the answers: pages, figures, files, a point of a map, and whether the study has changed."""
+"""Routes of the answers, to studies and to logs: pages, figures, files, a point of a map, changed studies."""
 
 from __future__ import annotations
 
-import io
 import re
-import zipfile
+from io import BytesIO
 from pathlib import Path
 from typing import Any, TypeVar
 from urllib.parse import quote
+from zipfile import ZIP_DEFLATED, ZipFile
 
 from fastapi import APIRouter
 from fastapi.responses import FileResponse, HTMLResponse, Response
 
-from separatrix.front.page.folder import LOG, Form, Page
-from separatrix.ground.document import part_of
+from separatrix.friction.friction_file import UNITS
+from separatrix.friction.logs.column_map import column_map_of
+from separatrix.front.page.editing import Fault, faults_in
+from separatrix.front.page.folder import LOG, LOGS, MAP, Body, Form, Page
 from separatrix.ground.errors import InputError
 from separatrix.ground.files import reading_only_in
+from separatrix.ground.toml import read_text
 from separatrix.ground.units import shown
 from separatrix.present import blocks, html
 from separatrix.study.reading import read_study
-from separatrix.verbs import tool_named, verb_named
+from separatrix.verbs import VERBS, tool_named, verb_named
+from separatrix.verbs.answer_files import AGAIN, asked_by, page_of_document, refusing_damage
 from separatrix.verbs.map import at_point
 from separatrix.verbs.parts.answer_page import is_chosen
-from separatrix.verbs.report import asked_by, differing
-from separatrix.verbs.saved_answers import AGAIN, refusing_damage
-from separatrix.verbs.verb import Tool
+from separatrix.verbs.report import differing
 from separatrix.verdict.ledger import NAME as LEDGER
 
 Named = TypeVar("Named", blocks.Picture, blocks.View)
-
-FRESH = {"cache-control": "no-cache"}
+EMPTY = dict.fromkeys(("title", "subtitle", "body", "refused"), "")
+"""What a template shows of an answer."""
 
 _SCRIPT = re.compile(r'<script( type="module")?>(.*?)</script>', re.DOTALL)
 _POLICY = re.compile(r'<meta http-equiv="Content-Security-Policy".*?>', re.DOTALL)
@@ -37,7 +39,7 @@ _POLICY = re.compile(r'<meta http-equiv="Content-Security-Policy".*?>', re.DOTAL
 
 def routes(page: Page) -> APIRouter:
     """Return the routes of the answers."""
-    router = APIRouter()
+    router = APIRouter(default_response_class=HTMLResponse)
 
     def block(verb: str, name: str, of: str, kind: type[Named]) -> Named:
         for one in page_of(page, verb, name).blocks:
@@ -45,24 +47,19 @@ def routes(page: Page) -> APIRouter:
                 return one
         raise InputError(f"{name}: {verb}", f"has no {shown(of)}")
 
-    @router.get("/answer/{verb}/{name:path}", response_class=HTMLResponse)
+    @router.get("/answer/{verb}/{name:path}")
     def answer(verb: str, name: str) -> Response:
-        return page.html(
-            "answer.html",
-            name=name,
-            verb=verb,
-            point=verb == "map",
-            changed=changed(page, name, page.loaded(file_of(page, verb, name))),
-            answers=page.answered(name),
-            **body_of(page, verb, name),
-        )
+        known: dict[str, Any] = {"name": name, "verb": verb, "answers": page.answered(name)}
+        known["changed"] = changed(page, name, page.loaded(file_of(page, verb, name)))
+        return page.html("answer.html", **known, **body_of(page, verb, name))
 
-    @router.get("/figure/{verb}/{of}/{name:path}", response_class=HTMLResponse)
+    @router.get("/figure/{verb}/{of}/{name:path}")
     def figure(verb: str, of: str, name: str) -> Response:
         with refusing_damage(name):
-            return HTMLResponse(html.drawn(block(verb, name, of, blocks.Picture)), headers=FRESH)
+            drawn = html.drawn(block(verb, name, of, blocks.Picture))
+        return HTMLResponse(drawn, headers={"cache-control": "no-cache"})
 
-    @router.get("/view/{verb}/{of}/{name:path}", response_class=HTMLResponse)
+    @router.get("/view/{verb}/{of}/{name:path}")
     def view(verb: str, of: str, name: str, script: str = "") -> Response:
         with refusing_damage(name):
             text = block(verb, name, of, blocks.View).html()
@@ -75,30 +72,27 @@ def routes(page: Page) -> APIRouter:
         head = '<head>\n<link rel="icon" href="/static/icon.svg">'
         return HTMLResponse(_POLICY.sub("", text).replace("<head>", head, 1))
 
-    def files_of(name: str) -> list[Path]:
-        found = sorted(page.folder.answers(name).glob("[!.]*"))
-        return [path for path in found if page.folder.has(path) and path.name != LEDGER]
+    def files_of(name: str) -> list[tuple[str, str]]:
+        known = (one for one in page.folder.answers(name).glob("[!.]*") if one.name != LEDGER)
+        return [(path.name, page.folder.name(path)) for path in sorted(known) if page.folder.has(path)]
 
-    @router.get("/files/{name:path}", response_class=HTMLResponse)
+    @router.get("/files/{name:path}")
     def files(name: str) -> Response:
-        found = [(path.name, page.folder.name(path)) for path in files_of(name)]
-        return page.html("files.html", name=name, files=found, answers=page.answered(name))
+        return page.html("files.html", name=name, files=files_of(name), answers=page.answered(name))
 
     @router.get("/zip/{name:path}")
     def everything(name: str) -> Response:
-        content = io.BytesIO()
-        with zipfile.ZipFile(content, "w", zipfile.ZIP_DEFLATED) as into:
-            for path in (page.folder.study(name), *files_of(name)):
-                into.write(path, page.folder.name(path))
-        sent = {"content-disposition": f"attachment; filename*=UTF-8''{quote(Path(name).stem)}.zip"}
-        return Response(content.getvalue(), media_type="application/zip", headers=sent)
+        with ZipFile(content := BytesIO(), "w", ZIP_DEFLATED) as into:
+            for one in (name, *(path for _, path in files_of(name))):
+                into.write(page.folder.inside(one), one)
+        return Response(content.getvalue(), media_type="application/zip")
 
     @router.get("/file/{name:path}")
     def file(name: str) -> Response:
         path = page.folder.inside(name)
         return FileResponse(path, filename=path.name)
 
-    @router.post("/point/{name:path}", response_class=HTMLResponse)
+    @router.post("/point/{name:path}")
     def point(name: str, sent: Form) -> Response:
         study, found = page.folder.study(name), page.loaded(file_of(page, "map", name))
         try:
@@ -117,14 +111,67 @@ def routes(page: Page) -> APIRouter:
     return router
 
 
-def _asked(verb: str) -> Tool:
-    return tool_named(verb) if verb == LOG else verb_named(verb)
+def routes_of_logs(page: Page) -> APIRouter:
+    """Return the routes of logs: drop them, correct how they are read, move the end of running-in."""
+    router = APIRouter(default_response_class=HTMLResponse)
+
+    def map_path(name: str) -> Path:
+        path = page.folder.log(name).with_name(name + MAP)
+        page.folder.refuse_link_out(path)
+        return path
+
+    def map_of(name: str) -> dict[str, Any]:
+        """Return the column map of a log with its faults; an empty text where the format needs none."""
+        path, faults = map_path(name), tuple[Fault, ...]()
+        text = read_text(path) if path.exists() else ""
+        try:
+            if text:
+                column_map_of(text, path.name)
+        except InputError as error:
+            faults = faults_in(error, path.name, path.name)
+        return {"name": name, "text": text, "faults": faults}
+
+    @router.put("/logs/{name}")
+    def drop(name: str, content: Body) -> Response:
+        """Keep a log that was dropped; one of the same name and content is there already."""
+        if name not in page.folder.logs() or page.folder.log(name).read_bytes() != content:
+            path = page.folder.new(name, LOGS)
+            path.parent.mkdir(exist_ok=True)
+            path.write_bytes(content)
+        return page.html("log_list.html", names=page.folder.logs())
+
+    @router.get("/logs")
+    def logs() -> Response:
+        return page.html("logs.html", names=page.folder.logs())
+
+    @router.get("/log/{name}")
+    def log(name: str) -> Response:
+        answer = page.folder.answers(name, LOG) / f"{LOG}.json"
+        body = body_of(page, LOG, name) if page.folder.has(answer) else EMPTY
+        tests = page.loaded(answer).get("tests") or [{}]
+        unit = UNITS.get(tests[0].get("run_in_axis"), "s")
+        return page.html("log.html", unit=unit, **body, **map_of(name))
+
+    @router.post("/map/{name}")
+    def correct(name: str, sent: Form) -> Response:
+        text = sent.get("text", "").replace("\r\n", "\n")
+        map_path(name).write_text(text, encoding="utf-8", newline="\n")
+        return page.html("map.html", **map_of(name))
+
+    @router.post("/reduce/{name}")
+    def reduce(name: str, sent: Form) -> Response:
+        columns, run_in = map_path(name), sent.get("run_in", "").strip()
+        question = {"column_map": columns if columns.exists() else None, "run_in": run_in or None}
+        page.jobs.ask(LOG, name, question)
+        return page.running()
+
+    return router
 
 
 def file_of(page: Page, verb: str, name: str) -> Path:
     """Return the file of a saved answer; one that is not there is refused."""
-    path = page.folder.answers(name, verb) / f"{_asked(verb).name}.json"
-    if not page.folder.has(path):
+    path = page.folder.answers(name, verb) / f"{verb}.json"
+    if verb not in (*VERBS, LOG) or not page.folder.has(path):
         raise InputError(f"{name}: {verb}", "has no answer yet", cure="Run the verb.")
     return path
 
@@ -135,8 +182,8 @@ def page_of(page: Page, verb: str, name: str) -> blocks.Page:
     where, found = page.folder.name(file), page.loaded(file)
     if not found:
         raise InputError(where, "is not a document of an answer", cure=AGAIN)
-    with refusing_damage(where):
-        return _asked(verb).page(part_of(found, where))
+    asked = tool_named(LOG) if verb == LOG else verb_named(verb)
+    return page_of_document(asked, found, where)
 
 
 def body_of(page: Page, verb: str, name: str) -> dict[str, Any]:
@@ -156,8 +203,8 @@ def body_of(page: Page, verb: str, name: str) -> dict[str, Any]:
         with refusing_damage(page.folder.name(file_of(page, verb, name))):
             body = html.body(found, blocks.Level.REPORT, picture, view)
     except InputError as error:
-        return {"title": "", "subtitle": "", "body": "", "refused": str(error)}
-    return {"title": found.title, "subtitle": found.subtitle, "body": body, "refused": ""}
+        return EMPTY | {"refused": str(error)}
+    return EMPTY | {"title": found.title, "subtitle": found.subtitle, "body": body}
 
 
 def changed(page: Page, name: str, found: dict[str, Any]) -> str:

@@ -9,7 +9,7 @@ from collections import defaultdict
 from collections.abc import Iterator, Mapping, MutableMapping
 from contextlib import suppress
 from pathlib import Path, PurePosixPath
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import tomlkit
 from fastapi import APIRouter
@@ -17,10 +17,10 @@ from fastapi.responses import HTMLResponse, RedirectResponse, Response
 from tomlkit.exceptions import TOMLKitError
 from tomlkit.items import Array, Table
 
-from separatrix.front.commands import asked_of, flag_of, option_value
+from separatrix.front.cli import asked_of, flag_of, option_value
 from separatrix.front.page.folder import REPORT, Form, Page
 from separatrix.ground.errors import InputError, grouped
-from separatrix.ground.files import is_inside, reading_only_in
+from separatrix.ground.files import is_inside, reading_only_in, write_new
 from separatrix.ground.reader import document_of
 from separatrix.ground.toml import MOST_BYTES, read_text
 from separatrix.ground.units import NUMBER, shown
@@ -66,15 +66,10 @@ def draft_path(study: Path) -> Path:
     return study.with_name(f".{study.name}.draft")
 
 
-def has_draft(study: Path) -> bool:
-    """Whether a study has a draft; a link that leads out of its folder is none."""
-    draft = draft_path(study)
-    return draft.is_file() and is_inside(draft, study.parent)
-
-
 def current(study: Path) -> Path:
-    """Return the draft of a study, or the study if it has none."""
-    return draft_path(study) if has_draft(study) else study
+    """Return the draft of a study, or the study if it has none; a link out of its folder is none."""
+    draft = draft_path(study)
+    return draft if draft.is_file() and is_inside(draft, study.parent) else study
 
 
 def version_of(text: str) -> str:
@@ -97,8 +92,7 @@ def keep(study: Path, text: str) -> None:
 
 def check(study: Path, root: Path) -> Checked:
     """Read the draft of a study as every verb would, without files outside `root`."""
-    path = current(study)
-    text, inherited = "", dict[str, Any]()
+    path, text, inherited = current(study), "", dict[str, Any]()
     try:
         text = read_text(path)
         with reading_only_in(root):
@@ -154,11 +148,10 @@ def as_typed(value: object) -> str:
     """Return a value as it is typed into a field: text as it is, lists and tables as TOML has them."""
     if value is None or isinstance(value, str):
         return value or ""
-    table = tomlkit.inline_table()
+    item: Any = tomlkit.inline_table() if isinstance(value, dict) else tomlkit.item(value)
     if isinstance(value, dict):
-        table.update(value)
-        return table.as_string()
-    return str(tomlkit.item(value).as_string())
+        item.update(value)
+    return str(item.as_string())
 
 
 # ---- one key changed
@@ -167,19 +160,7 @@ def as_typed(value: object) -> str:
 def edited(text: str, section: str, key: str, value: str) -> str:
     """Return the text with one key set as a form gives it, comments kept; an empty value removes the key.
 
-    Parameters
-    ----------
-    text : str
-        Of a study file.
-    section, key : str
-        Of the study; an empty section is above the first one.
-    value : str
-        As typed: a number, a quantity, a word, or a list or table as TOML writes it.
-
-    Raises
-    ------
-    InputError
-        The text is not TOML, or the change would lose comments in a list.
+    An empty section is above the first one. `InputError`: the text is not TOML, or comments would be lost.
     """
     try:
         document = tomlkit.parse(text)
@@ -228,28 +209,18 @@ def routes(page: Page) -> APIRouter:
     """Return the routes of the studies."""
     router = APIRouter(default_response_class=HTMLResponse)
 
-    def editor(name: str, problem: str = "", page_of: str = "editor.html", **more: object) -> Response:
+    def editor(name: str, problem: str = "", page_of: str = "editor.html", **more: Any) -> Response:
         """Return the text and the form beside it."""
         path = page.folder.study(name)
         checked = check(path, page.folder.root)
-        return page.html(
-            page_of,
-            name=name,
-            checked=checked,
-            version=version_of(checked.text),
-            sections=[*form(checked)],
-            as_typed=as_typed,
-            problem=problem,
-            has_draft=has_draft(path),
-            **more,
-        )
+        more |= {"checked": checked, "version": version_of(checked.text), "sections": [*form(checked)]}
+        more |= {"as_typed": as_typed, "problem": problem, "has_draft": current(path) != path}
+        return page.html(page_of, name=name, **more)
 
     @router.get("/")
     def studies() -> Response:
-        rows = [
-            (name, page.title(name), page.answered(name), has_draft(page.folder.study(name)))
-            for name in page.folder.studies()
-        ]
+        paths = {name: page.folder.study(name) for name in page.folder.studies()}
+        rows = [(one, page.title(one), page.answered(one), current(at) != at) for one, at in paths.items()]
         return page.html("studies.html", rows=rows, shipped=sorted(shipped_studies()))
 
     @router.post("/new")
@@ -257,8 +228,7 @@ def routes(page: Page) -> APIRouter:
         name = f"{sent.get('name', '').strip().removesuffix('.toml')}.toml"
         path, base = page.folder.new(name), shipped_studies().get(sent.get("base", ""))
         text = template() if base is None else base.read_text(encoding="utf-8")
-        with path.open("x", encoding="utf-8", newline="\n") as file:
-            file.write(text)
+        write_new(path, text.encode())
         return RedirectResponse(f"/study/{page.folder.name(path)}", status_code=303)
 
     @router.get("/study/{name:path}")
@@ -268,9 +238,7 @@ def routes(page: Page) -> APIRouter:
             page_of="study.html",
             title=page.title(name),
             verbs=[verb_named(verb) for verb in VERBS],
-            helps=VERBS,
             asked_of=asked_of,
-            kind_of=kind_of,
             answers=page.answered(name),
         )
 
@@ -281,12 +249,9 @@ def routes(page: Page) -> APIRouter:
         if sent.get("version") != version_of(text):
             return editor(name, CHANGED)
         try:
-            if "text" in sent:
-                text = sent["text"].replace("\r\n", "\n")
-            else:
-                section, _, key = sent.get("field", "").partition(".")
-                text = edited(text, section, key, sent.get("value", ""))
-            keep(path, text)
+            section, _, key = sent.get("field", "").partition(".")
+            text = sent["text"] if "text" in sent else edited(text, section, key, sent.get("value", ""))
+            keep(path, text.replace("\r\n", "\n"))
         except InputError as error:
             return editor(name, str(error))
         return editor(name)
@@ -307,7 +272,7 @@ def routes(page: Page) -> APIRouter:
         verb = sent.get("verb", "")
         question = {} if verb == REPORT else asked(page, name, verb, sent)
         path = page.folder.study(name)
-        if path.suffix == ".toml" and (faults := check(path, page.folder.root).faults):
+        if faults := check(path, page.folder.root).faults:
             raise InputError(path.name, f"is not run: {faults[0].message}")
         current(path).replace(path)
         page.jobs.ask(verb, name, question)
@@ -315,14 +280,9 @@ def routes(page: Page) -> APIRouter:
 
     router.get("/jobs")(page.running)
 
-    @router.post("/jobs/{number:int}/cancel")
-    def cancel(number: int) -> Response:
-        page.jobs.cancel(number)
-        return page.running()
-
-    @router.post("/jobs/{number:int}/resume")
-    def resume(number: int) -> Response:
-        page.jobs.resume(number)
+    @router.post("/jobs/{number:int}/{change}")
+    def change(number: int, change: Literal["cancel", "resume"]) -> Response:
+        getattr(page.jobs, change)(number)
         return page.running()
 
     return router
@@ -332,15 +292,12 @@ def asked(page: Page, study: str, verb: str, sent: Mapping[str, str]) -> dict[st
     """Return the options of a verb, and the model, as a form gives them; empty ones have their defaults."""
     question: dict[str, object] = {}
     for name, (hint, note, _) in asked_of(verb_named(verb)).items():
-        match kind_of(hint), sent.get(name, "").strip():
-            case _, "":
-                pass
-            case "flag", _:
-                question[name] = True
-            case "texts", text:
-                question[name] = tuple(line.strip() for line in text.splitlines() if line.strip())
-            case "file", text:
-                question[name] = page.folder.inside(str(PurePosixPath(study).parent / text))
-            case kind, text:
-                question[name] = option_value(kind, text, flag_of(name, note))
+        kind, text = kind_of(hint), sent.get(name, "").strip()
+        found: Any = option_value(kind, text or None, flag_of(name, note), note)
+        if kind == "texts":
+            found = tuple(line.strip() for line in text.splitlines() if line.strip())
+        elif kind == "file" and text:
+            found = page.folder.inside(str(PurePosixPath(study).parent / text))
+        if text:
+            question[name] = True if kind == "flag" else found
     return question

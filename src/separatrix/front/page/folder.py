@@ -22,6 +22,7 @@ from separatrix.ground.files import is_inside
 from separatrix.ground.toml import read_text
 from separatrix.ground.units import printable, shown
 from separatrix.verbs import VERBS
+from separatrix.verbs.verb import kind_of
 
 if TYPE_CHECKING:
     from separatrix.front.page.worker import Job, Jobs
@@ -45,7 +46,6 @@ TEMPLATES = Environment(
     trim_blocks=True,
     lstrip_blocks=True,
 )
-TEMPLATES.globals |= {"version": __version__}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -75,8 +75,6 @@ class Folder:
 
     def new(self, name: str, place: str = "") -> Path:
         """Return the path of a file to make beside the studies or in a folder there, or refuse its name."""
-        if name == ".toml":
-            raise InputError("The name", "must not be empty", cure="Type one, for instance my-bearing.")
         if not _NAME.fullmatch(name) or Path(name).name != name:
             cure = "Use letters, digits, spaces, dots and dashes."
             raise InputError(shown(name), "is not a name for a file", cure=cure)
@@ -93,14 +91,12 @@ class Folder:
             raise InputError(shown(name), "is not a study")
         return path
 
-    def asked(self, name: str, verb: str = "") -> Path:
-        """Return the path of the study, or the log, that a verb is asked of."""
-        return self.log(name) if verb == LOG else self.study(name)
-
     def answers(self, name: str, verb: str = "") -> Path:
         """Return the folder of the answers to a study, that of the command line, or to a log."""
-        path = self.asked(name, verb)
-        return path.with_name(name + OF_LOG if verb == LOG else printable(path.stem, 100))
+        if verb == LOG:
+            return self.log(name).with_name(name + OF_LOG)
+        path = self.study(name)
+        return path.with_name(printable(path.stem, 100))
 
     def logs(self) -> list[str]:
         """Return the names of the logs of tribometers."""
@@ -119,21 +115,17 @@ class Folder:
 
     def studies(self) -> list[str]:
         """Return the names of the studies, those on top first."""
-        found = (path for depth in range(DEEPEST) for path in self.root.glob("*/" * depth + "*"))
-        kinds = (path for path in found if path.suffix == ".toml")
-        names = (self.name(path) for path in kinds if self._is_own(path) and _is_study(path))
+        found = (path for depth in range(DEEPEST) for path in self.root.glob("*/" * depth + "*.toml"))
+        names = (self.name(path) for path in found if self._is_study(path))
         return sorted(names, key=lambda name: (name.count("/"), name.casefold()))[:MOST_STUDIES]
 
-    def _is_own(self, path: Path) -> bool:
-        """Whether a path is a file that is not hidden, and to which no link leads."""
+    def _is_study(self, path: Path) -> bool:
+        """Whether a path is a file that begins as a study does, is not hidden, and to which no link leads."""
         name = self.name(path)
-        return path.is_file() and "/." not in f"/{name}" and path.resolve() == self.root.resolve() / name
-
-
-def _is_study(path: Path) -> bool:
-    """Whether a file begins as a study does; a library or a friction file does not."""
-    with path.open("rb") as file:
-        return _HEADER.search(file.read(_BEGINNING)) is not None
+        if not path.is_file() or "/." in f"/{name}" or path.resolve() != self.root.resolve() / name:
+            return False
+        with path.open("rb") as file:
+            return _HEADER.search(file.read(_BEGINNING)) is not None
 
 
 @lru_cache(maxsize=64)
@@ -152,9 +144,9 @@ class Page:
     folder: Folder
     jobs: Jobs
 
-    def html(self, template: str, **values: object) -> HTMLResponse:
-        """Return a page or a part of one; a list of jobs leads to their answers."""
-        return HTMLResponse(TEMPLATES.get_template(template).render(address=address, **values))
+    def html(self, template: str, status: int = 200, **values: object) -> HTMLResponse:
+        """Return a page or a part of one."""
+        return HTMLResponse(TEMPLATES.get_template(template).render(**values), status)
 
     def running(self) -> HTMLResponse:
         """Return the list of jobs."""
@@ -167,8 +159,7 @@ class Page:
 
     def title(self, study: str) -> str:
         """Return the title that the file of a study has; empty if it has none of its own."""
-        path = self.folder.study(study)
-        title = self.loaded(path).get("title") if path.suffix == ".toml" else ""
+        title = self.loaded(self.folder.study(study)).get("title")
         return title if isinstance(title, str) else ""
 
     def answered(self, study: str) -> list[str]:
@@ -183,9 +174,20 @@ def address(job: Job) -> str:
     return f"/{place}/{quote(job.name)}"
 
 
-async def _form_of(request: Request) -> dict[str, str]:
+TEMPLATES.globals |= {"version": __version__, "address": address, "helps": VERBS, "kind_of": kind_of}
+
+
+async def _body_of(request: Request) -> bytes:
+    return await request.body()
+
+
+Body = Annotated[bytes, Depends(_body_of)]
+"""What was sent."""
+
+
+def _form_of(body: Body) -> dict[str, str]:
     """Return the fields of a form that was sent, the last of each name."""
-    sent = parse_qs((await request.body()).decode("utf-8", "replace"), keep_blank_values=True)
+    sent = parse_qs(body.decode("utf-8", "replace"), keep_blank_values=True)
     return {name: values[-1] for name, values in sent.items()}
 
 

@@ -27,17 +27,17 @@ from separatrix.ground.files import reading_only_in, staged
 
 if TYPE_CHECKING:
     from separatrix.ground.document import Document
+    from separatrix.verbs import Computed
+    from separatrix.verbs.verb import Verb
     from separatrix.verdict.long_jobs import Progress
 
 WAITING, RUNNING = "waiting", "running"
-INTERRUPTED = ("cancelled", "The answer has what was finished. Resume to go on.")
-
 MOST_WAITING, MOST_KEPT = 20, 50
 _AT_THE_END = 10.0
 """Time that the process has to write what it finished when the page is closed [s]."""
 
-KEPT = "Finished runs are kept: resume to go on."
-LOST = f"The computing process ended; the terminal of `separatrix app` may show why. {KEPT}"
+INTERRUPTED = "cancelled", "Finished runs are kept: resume to go on."
+LOST = f"The computing process ended; the terminal of `separatrix app` may show why. {INTERRUPTED[1]}"
 
 Send = Callable[..., None]
 """Sends the page what has changed of a job, by the names of its fields."""
@@ -50,9 +50,7 @@ class Job:
     number: int
     verb: str
     name: str
-    question: Mapping[str, object] = field(default_factory=dict)
-    """Options of the verb, with the model of the cage."""
-
+    question: Mapping[str, object] = field(default_factory=dict)  # options, with the model of the cage
     state: str = WAITING
     share: float | None = None  # of the work that is done; None before that is known
     left: float | None = None  # time that the rest takes [s]; None before a tenth is done
@@ -94,8 +92,8 @@ class Jobs:
                     return one
             if len(active) >= MOST_WAITING:
                 raise InputError("The queue", f"has {MOST_WAITING} jobs", cure="Wait, or cancel some.")
-            for number in [number for number, one in self._jobs.items() if not one.is_active][:-MOST_KEPT]:
-                del self._jobs[number]
+            for one in [one for one in self._jobs.values() if not one.is_active][:-MOST_KEPT]:
+                del self._jobs[one.number]
             self._jobs[job.number] = job
             self._waiting.put(job.number)
             return job
@@ -118,8 +116,7 @@ class Jobs:
 
     def resume(self, number: int) -> None:
         """Ask a question again: it goes on with the runs that are kept."""
-        with self._lock:
-            job = self._jobs.get(number)
+        job = next((one for one in self.all() if one.number == number), None)
         if job is None:
             raise InputError("The job", "is no longer listed", cure="Run the verb again: it resumes too.")
         self.ask(job.verb, job.name, job.question)
@@ -151,7 +148,7 @@ class Jobs:
             except (EOFError, OSError):
                 with self._lock:
                     is_left = self._jobs[number].is_cancelling  # it ended with work that was left behind
-                    state, message = ("cancelled", KEPT) if is_left else ("failed", LOST)
+                    state, message = INTERRUPTED if is_left else ("failed", LOST)
                     self._change(number, state=state, message=message)
                     self._process = None
 
@@ -160,10 +157,7 @@ class Jobs:
         if self._pipe is None or self._process is None or not self._process.is_alive():
             context = multiprocessing.get_context("spawn")
             self._pipe, theirs = context.Pipe()
-            arguments = theirs, self.root
-            self._process = context.Process(
-                target=work, args=arguments, name="separatrix worker", daemon=True
-            )
+            self._process = context.Process(target=work, args=(theirs, self.root), daemon=True)
             self._process.start()
             theirs.close()
         return self._pipe
@@ -232,67 +226,54 @@ def _ended(job: Job, folder: Folder, pipe: Connection) -> tuple[str, str]:
 
 
 def answered(job: Job, folder: Folder, send: Send) -> tuple[str, str]:
-    """Compute and write one answer, or a report; return how it ended, and a message."""
+    """Compute and write one answer, or a report with what it lacks; return how it ended, and a message."""
     from separatrix.verbs import asked_study, computed, verb_named
     from separatrix.verbs.answer_files import document, save_answer
+    from separatrix.verbs.report import report_of_study
 
-    source, place = folder.asked(job.name, job.verb), folder.answers(job.name, job.verb)
-    question = dict(job.question)
-    model = question.pop("model", None)
+    source = folder.log(job.name) if job.verb == LOG else folder.study(job.name)
+    place, question = folder.answers(job.name, job.verb), dict(job.question)
     with reading_only_in(folder.root):
         for path in (place, *(place.iterdir() if place.is_dir() else ())):
             folder.refuse_link_out(path)
         place.mkdir(parents=True, exist_ok=True)
         if job.verb == LOG:
             return _reduced(source, place, question, send)
+        verb, model = verb_named("check" if job.verb == REPORT else job.verb), question.pop("model", None)
+        study = asked_study(verb, source, str(model) if model else None)
+
+        def compute(verb: Verb, options: Any = None) -> Computed:
+            return computed(verb, study, options, folder=place, progress=reporting(send))
+
+        def part(verb: Verb) -> Document:
+            send(message=f"Computing {verb.name} for the report.")
+            return document(verb, compute(verb))
+
         if job.verb == REPORT:
-            return _reported(source, place, send)
-        verb = verb_named(job.verb)
-        study, options = asked_study(verb, source, str(model) if model else None), verb.options(**question)
-        found = computed(verb, study, options, folder=place, progress=reporting(send))
+            report = report_of_study(study, part, place, pictures=True)
+            if report is None:
+                return INTERRUPTED
+            send(message="Writing the report.")
+            report.write(place, with_pdf=find_spec("typst") is not None)
+            return "finished", ""
+        found = compute(verb, verb.options(**question))
         send(message="Drawing the figures and writing the files.")
         save_answer(place, verb, document(verb, found))
-        if not found.is_complete:
-            return INTERRUPTED
         taken = f"{found.runs_taken} runs were taken from an earlier job." if found.runs_taken else ""
-        return "finished", taken
+        return ("finished", taken) if found.is_complete else INTERRUPTED
 
 
-def _reported(source: Path, place: Path, send: Send) -> tuple[str, str]:
-    """Write the report of a study; answers that it lacks are computed first, as the command does."""
-    from separatrix.study.reading import read_study
-    from separatrix.verbs import computed
-    from separatrix.verbs.answer_files import document
-    from separatrix.verbs.report import report_of_study
-    from separatrix.verbs.verb import Verb
-
-    study = read_study(source)
-
-    def compute(verb: Verb) -> Document:
-        send(message=f"Computing {verb.name} for the report.")
-        return document(verb, computed(verb, study, folder=place, progress=reporting(send)))
-
-    report = report_of_study(study, compute, place, pictures=True)
-    if report is None:
-        return INTERRUPTED
-    send(message="Writing the report.")
-    report.write(place, with_pdf=find_spec("typst") is not None)
-    return "finished", ""
-
-
-def _reduced(log: Path, place: Path, question: Mapping[str, object], send: Send) -> tuple[str, str]:
+def _reduced(log: Path, place: Path, question: Mapping[str, Any], send: Send) -> tuple[str, str]:
     """Reduce a log and write its answer; one that leaves questions open gets a draft of its column map."""
     from separatrix.friction.logs import UnmappedError
-    from separatrix.verbs import processors, tool_named
+    from separatrix.verbs import processors
+    from separatrix.verbs.tribometer import Options, document, reduced
 
-    tool = tool_named(LOG)
     try:
-        found = tool.compute(tool.options(files=(log,), **question), processors(), reporting(send))
+        found = reduced(Options(files=(log,), **question), processors(), reporting(send))
     except UnmappedError as error:
-        if not error.place.exists():
-            error.place.write_text(error.draft, encoding="utf-8", newline="\n")
         cure = "Answer the questions in the draft of the column map, on the page of this log."
-        raise error.at(error.path, cure=cure) from None
+        raise error.with_draft_written().at(error.path, cure=cure) from None
     with staged(place) as stage:
-        (stage / f"{LOG}.json").write_text(json_text(found) + "\n", encoding="utf-8")
+        (stage / f"{LOG}.json").write_text(json_text(document(found)) + "\n", encoding="utf-8")
     return "finished", ""

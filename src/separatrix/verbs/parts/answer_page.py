@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shlex
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from functools import partial
 from operator import itemgetter
 from typing import Any
 
@@ -39,10 +40,8 @@ def page_of(
     uncertain = ", ".join(one["name"] for one in answer.values["study"]["uncertain_inputs"])
     notes = [f"Uncertain inputs are at their means: {uncertain}."] if uncertain and not draws else []
     texts = [*notes, *answer.warnings]
-    caveats = [
-        Note(text, "caveat", Level.ALWAYS if place < MOST_NOTES else Level.LONG)
-        for place, text in enumerate(texts)
-    ]
+    caveats = [Note(text, "caveat") for text in texts[:MOST_NOTES]]
+    caveats += [Note(text, "caveat", Level.LONG) for text in texts[MOST_NOTES:]]
     hidden = [*more, *([f"{len(texts) - MOST_NOTES} more notes"] if texts[MOST_NOTES:] else [])]
     if hidden:
         caveats.append(Note(f"`--full` has {', '.join(hidden)}.", level=Level.BRIEF))
@@ -66,7 +65,6 @@ def sources(answer: Part, level: Level = APPENDIX) -> list[Block]:
         text_column("value", lambda row: entry_words(row[2])),
         text_column("given in", lambda row: row[2]["origin"]),
     )
-    files = {str(name): str(one.get("sha256") or "") for name, one in (known.get("files") or {}).items()}
     return [
         Heading("Inputs and their sources", level),
         Table("inputs", columns, entries, "Inputs of the study.", level),
@@ -78,7 +76,7 @@ def sources(answer: Part, level: Level = APPENDIX) -> list[Block]:
             ("Version of separatrix", answer.separatrix_version),
             ("Seed", str(answer.seed)),
             *((str(name), str(one)) for name, one in (known.get("versions") or {}).items()),
-            *((f"SHA-256 of {name}", one) for name, one in files.items()),
+            *((f"SHA-256 of {name}", one.get("sha256")) for name, one in (known.get("files") or {}).items()),
             level=level,
         ),
     ]
@@ -110,10 +108,11 @@ def _materials(study: Json, level: Level) -> list[Block]:
     found += [one.get("material") for one in (study.get("ranking") or {}).get("candidates", [])]
     rows = {one["name"]: one for one in found if isinstance(one, dict) and one.get("name")}
 
-    def property_column(key: str) -> Column:
-        return text_column(key.replace("_", " "), lambda row: entry_words(row.get(key) or {}))
+    def words(key: str, row: Json) -> str:
+        return entry_words(row.get(key) or {})
 
-    columns = (text_column("material", itemgetter("name")), *map(property_column, PROPERTIES))
+    properties = (text_column(key.replace("_", " "), partial(words, key)) for key in PROPERTIES)
+    columns = (text_column("material", itemgetter("name")), *properties)
     caption = "Materials, at the temperature of the study."
     known = ((name, f"{one['source']} ({one['confidence']})") for name, one in rows.items() if one["source"])
     return [Table("materials", columns, tuple(rows.values()), caption, level), facts(*known, level=level)]
@@ -132,18 +131,13 @@ def _frictions(ranking: Json, level: Level) -> list[Block]:
 def friction_columns(places: Iterable[str], of: Callable[[Any], Json]) -> Iterator[Column]:
     """Return a column of measured frictions for each environment; `of` finds in a row its frictions."""
 
-    def column(place: str) -> Column:
-        return text_column(place, lambda row: friction_words(of(row).get(place)))
+    def friction(place: str, row: Any) -> str:
+        if (found := of(row).get(place)) is None:
+            return "not measured"
+        spread = found.get("standard_deviation")
+        return f"{found['mean']:.3f}" + (f" \N{PLUS-MINUS SIGN} {spread:.2g}" if spread else "")
 
-    return map(column, places)
-
-
-def friction_words(found: Json | None) -> str:
-    """Return a measured friction with its standard deviation."""
-    if found is None:
-        return "not measured"
-    spread = found.get("standard_deviation")
-    return f"{found['mean']:.3f}" + (f" \N{PLUS-MINUS SIGN} {spread:.2g}" if spread else "")
+    return (text_column(place, partial(friction, place)) for place in places)
 
 
 def command(answer: Part) -> str:
@@ -205,16 +199,14 @@ def bearing_facts(answer: Part) -> list[tuple[str, str]]:
     grooves = ", ".join(f"{entry_words(at[f'{race}_conformity'])} {race}" for race in ("inner", "outer"))
     contact = f"{entry_words(at['contact_angle'])} without load; {steels}; groove radius over ball diameter"
     size = f"pitch diameter {entry_words(at['pitch_diameter'])}"
+    traction = (f"{key.replace('_', ' ')} {one['value']}" for key, one in study["traction"].items())
     name = stated(study, "bearing", "designation")
     return [
-        ("Bearing", ", ".join(filter(None, [name, balls, size, bore and f"bore {bore}"]))),
+        ("Bearing", _listed(", ", name, balls, size, bore and f"bore {bore}")),
         ("Contact angle", f"{contact} {grooves}"),
         ("Operation", operation_words(study)),
         ("Film on the races", film_words(study)),
-        (
-            "Traction",
-            ", ".join(f"{key.replace('_', ' ')} {one['value']}" for key, one in study["traction"].items()),
-        ),
+        ("Traction", ", ".join(traction)),
     ]
 
 

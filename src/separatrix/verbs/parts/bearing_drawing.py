@@ -14,7 +14,7 @@ import numpy as np
 from separatrix.ground.document import Part
 from separatrix.ground.units import Array, Metre, Radian
 from separatrix.present.blocks import Picture
-from separatrix.present.figure import GREY, VERMILION, Axis, Figure, Mark, Panel, Trace
+from separatrix.present.figure import GREY, VERMILION, Axis, Mark, Panel, Trace
 from separatrix.verbs.parts.answer_page import entry_words, figure, stated
 from separatrix.verbs.parts.quantity_text import show
 
@@ -22,6 +22,9 @@ STEEL, BALL, CAGE = "#c9ced6", "#eef1f5", "#e8c27a"
 SHOULDER, WALL, WIDTH, CAGE_WIDTH = 0.3, 0.22, 1.5, 1.36
 """Height of a land above the groove, thickness of a cage, width of a ring and of a cage over the ball's
 diameter, where the study states none."""
+
+
+RINGS = "inner", "outer"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -55,23 +58,19 @@ def section_of(study: Mapping[str, Any]) -> Section:
     if study.get("cage"):
         inner, outer, width = sizes
         wall = WALL * diameter
-        if inner is None and outer is None:
-            usual = {"inner": inner_land + gap, "outer": outer_land - gap - wall}
-            inner = usual.get(guidance, centre - wall / 2)
-        inner = outer - wall if inner is None and outer is not None else inner
-        outer = inner + wall if outer is None and inner is not None else outer
-        cage = inner or 0.0, outer or 0.0, width or CAGE_WIDTH * r
+        usual = {"inner": inner_land + gap, "outer": outer_land - gap - wall}
+        if inner is None:
+            inner = usual.get(guidance, centre - wall / 2) if outer is None else outer - wall
+        cage = inner, inner + wall if outer is None else outer, width or CAGE_WIDTH * r
         inner_land = cage[0] - gap if guidance == "inner" else inner_land
         outer_land = cage[1] + gap if guidance == "outer" else outer_land
     bore = half("bearing", "bore") or centre - diameter
     play = known("cage", "pocket_axial_clearance") or known("cage", "pocket_clearance") or 0.0
+    inner_groove, outer_groove = (diameter * known("bearing", f"{ring}_conformity") for ring in RINGS)
     return Section(
         ball=r,
         centre=centre,
-        grooves=(
-            diameter * known("bearing", "inner_conformity"),
-            diameter * known("bearing", "outer_conformity"),
-        ),
+        grooves=(inner_groove, outer_groove),
         lands=(inner_land, outer_land),
         rims=(bore, 2 * centre - bore),
         cage=cage,
@@ -90,20 +89,14 @@ def bearing_picture(answer: Part, contacts: Part | None) -> Picture:
         angles = [one.contact_angle for one in both]
         words = " inner, ".join(show(one, "contact_angle") for one in both) + " outer"
     sizes = [f"contact angle {words}"]
-    for section, key, name in (
-        ("bearing", "ball_diameter", "ball"),
-        ("cage", "pocket_clearance", "pocket clearance"),
-        ("cage", "land_clearance", "land clearance"),
-    ):
+    for name in ("bearing.ball_diameter", "cage.pocket_clearance", "cage.land_clearance"):
+        section, _, key = name.partition(".")
         text = stated(study, section, key)
-        sizes += [f"{name} {text}"] if text else []
+        sizes += [f"{key.replace('_', ' ')} {text}"] if text else []
     dashed = "Dashed: at common proportions, where the study states no size"
     caption = f"Section through the axis, to scale: {', '.join(sizes)}. {dashed}."
 
-    def drawing() -> Figure:
-        return figure(answer, (section_panel(of, angles),), height=3.4)
-
-    return Picture("bearing", drawing, caption)
+    return Picture("bearing", lambda: figure(answer, (section_panel(of, angles),), height=3.4), caption)
 
 
 def section_panel(of: Section, angles: Sequence[Radian]) -> Panel:
@@ -128,9 +121,8 @@ def section_panel(of: Section, angles: Sequence[Radian]) -> Panel:
             outline = "-" if of.is_cage_stated else "--"
             marks.append(_area(across, [low, low, high, high], CAGE, outline))
     for side, alpha in zip((-1, 1), angles, strict=True):
-        end = side * r * np.sin(alpha), of.centre + side * r * np.cos(alpha)
-        line = Trace(x=[0.0, end[0]], y=[of.centre, end[1]], colour=VERMILION, marker="o", size=2.5)
-        marks.append(line)
+        ends = [0.0, side * r * np.sin(alpha)], [of.centre, of.centre + side * r * np.cos(alpha)]
+        marks.append(Trace(x=ends[0], y=ends[1], colour=VERMILION, marker="o", size=2.5))
     marks.append(Trace(x=[-half, half], y=[of.centre] * 2, colour=GREY, line="-.", width=0.5))
     return Panel(
         title="Section",

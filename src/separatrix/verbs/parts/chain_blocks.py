@@ -9,13 +9,15 @@ from separatrix.verbs.parts.quantity_text import cell, fact, fill, named, show
 
 
 def clearance_blocks(found: Part | None) -> list[Block]:
-    """Return each clearance of the cage at rest and as it runs, with its strains; none if they are stated."""
+    """Return the clearances of the cage under their heading; none if they are stated."""
     return [] if found is None else [Heading("Clearances of the cage"), facts(*clearance_facts(found))]
 
 
-def clearance_facts(found: Part) -> list[tuple[str, str]]:
-    """Return each clearance of the cage at rest and as it runs, with its strains."""
-    rows = []
+def clearance_facts(found: Part | None) -> list[tuple[str, str]]:
+    """Return each clearance of the cage at rest and as it runs, with its strains; none if they are stated."""
+    rows: list[tuple[str, str]] = []
+    if found is None:
+        return rows
     for words, rest, runs in (
         ("Running pocket clearance", "pocket_at_rest", "pocket"),
         ("Along the axis", "pocket_axial_at_rest", "pocket_axial"),
@@ -24,8 +26,8 @@ def clearance_facts(found: Part) -> list[tuple[str, str]]:
         if rest in found and runs in found:
             text = f"{{{runs}}} at {{temperature}} and a cage speed of {{cage_speed}}, "
             rows.append((words, fill(found, f"{text}{{{rest}}} at 293 K at rest")))
-    strains = (("cage", "cage_strain"), ("balls", "ball_strain"), ("rings", "ring_strain"))
-    known = [fill(found, f"{part} {{{key}}}") for part, key in strains if key in found]
+    parts = [one for one in ("cage", "ball", "ring") if f"{one}_strain" in found]
+    known = [f"{one}{'s' * (one != 'cage')} {show(found, f'{one}_strain')}" for one in parts]
     grown = [fill(found, "cage {hoop_strain} at its pitch radius")]
     lands = (("its land", "cage_land_growth"), ("the ring's land", "ring_land_growth"))
     grown += [fill(found, f"{part} {{{key}}} in radius") for part, key in lands if found.get(key)]
@@ -41,9 +43,8 @@ def restitution_blocks(chain: Part, level: Level = Level.LONG) -> list[Block]:
 
     def factor(end: str) -> Column:
         head = "if the ball may spin" if end else "dampings summed (Eq. 18)"
-        is_over = chain.get(f"restitution_factor{end}") == 0.0
-        mark = {"restitution_factor": OVERDAMPED} if is_over else {}
-        return Column(head, lambda name: cell(chain, name + end, mark.get(name, "")))
+        mark = OVERDAMPED if chain.get(f"restitution_factor{end}") == 0.0 else ""
+        return Column(head, lambda name: cell(chain, name + end, mark * name.startswith("rest")))
 
     stiffness = "ball_cage_stiffness"
     hertz = "{restitution_factor_hertz} in an impact at the impact speed, less in a harder one"
@@ -113,10 +114,8 @@ def basis_facts(answer: Part) -> list[tuple[str, str | Cell]]:
         return f"{show(chain.inner, name)} inner, {show(chain.outer, name)} outer"
 
     over = OVERDAMPED if chain.restitution_factor_free_spin == 0.0 else ""
-    eta = (
-        "{restitution_factor} with race dampings summed (Eq. 18); {restitution_factor_free_spin}"
-        f"{over} if the ball may spin; {{restitution_factor_hertz}} with a Hertzian pocket"
-    )
+    eta = "{restitution_factor} with race dampings summed (Eq. 18); {restitution_factor_free_spin}"
+    eta += f"{over} if the ball may spin; {{restitution_factor_hertz}} with a Hertzian pocket"
     rows: list[tuple[str, str | Cell]] = [
         *bearing_facts(answer),
         ("Contact angles under load", both("contact_angle")),
@@ -126,11 +125,6 @@ def basis_facts(answer: Part) -> list[tuple[str, str | Cell]]:
         (named("restitution_factor"), fill(chain, eta)),
         ("Stiffness of ball and pocket", f"{show(chain, 'ball_cage_stiffness')}, {chain.stiffness_source}"),
     ]
-    rows += [] if chain.clearances is None else clearance_facts(chain.clearances)
-    if "orbital_share" in chain:  # of a bearing whose balls do not run alike
-        lead = (
-            "up to {lead_amplitude} (pockets {half_play} each way); the harmonics used contain "
-            "{orbital_share} of the speed variance"
-        )
-        rows.append(("Free balls lead and lag", fill(chain, lead)))
-    return rows
+    lead = "up to {lead_amplitude} (pockets {half_play} each way); the harmonics used contain "
+    lead = fill(chain, lead + "{orbital_share} of the speed variance") if "orbital_share" in chain else ""
+    return [*rows, *clearance_facts(chain.clearances), ("Free balls lead and lag", lead)]

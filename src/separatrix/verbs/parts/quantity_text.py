@@ -1,4 +1,8 @@
-"""Numbers of an answer as facts, columns, sentences and axes, each as `quantities` describes it."""
+"""How each quantity of an answer is written, and its numbers as facts, columns, sentences and axes.
+
+The unit of a quantity stands at the field of its record and in every document; so does the meaning, in the
+reference of answers. A name means the same everywhere, so each stands here once.
+"""
 
 from __future__ import annotations
 
@@ -7,13 +11,261 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from functools import partial
 from itertools import pairwise
+from operator import itemgetter
 from typing import Any
 
 from separatrix.ground.document import Part
 from separatrix.ground.quantity import Estimate, Number, Quantity, alone, scale
 from separatrix.present.blocks import Cell, Column, Level, Table, text_column
 from separatrix.present.figure import Axis, Trace
-from separatrix.verbs.parts.quantities import QUANTITIES
+
+Q = Quantity
+
+QUANTITIES: dict[str, Quantity] = {
+    # The ball set and its contacts.
+    "azimuth": Q(label="azimuth of the ball", head="azimuth", digits=4),
+    "orbital_speed": Q(label="orbital speed of the ball", head="orbit", unit="rad/s", digits=5),
+    "pitch_angle": Q(label="pitch angle of the ball's spin", head="pitch", digits=4),
+    "axial_displacement": Q(label="axial displacement of the inner ring", digits=4),
+    "radial_displacement": Q(label="radial displacement of the inner ring", digits=4),
+    "tilt": Q(label="tilt of the inner ring", digits=4),
+    "moment": Q(label="moment of the balls", digits=4),
+    "friction_torque": Q(label="torque of friction of balls on races", digits=4),
+    "shaft_torque": Q(label="torque of the shaft", digits=4),
+    "shaft_power": Q(label="power of the shaft", digits=4),
+    "cage_power": Q(label="friction at pockets and lands"),
+    "ball_drag": Q(label="drag of the fluid on a ball"),
+    "drag_share": Q(label="drag over what the races hold", unit="%", digits=2),
+    "ball_drag_power": Q(label="power of the drag of the balls"),
+    "spin_power": Q(label="power of the fluid on the spin of the balls"),
+    "cage_drag_power": Q(label="power of the fluid on the faces of the cage"),
+    "inner_ring_temperature": Q(label="temperature of the inner ring", digits=5),
+    "ball_temperature": Q(label="temperature of the balls", digits=5),
+    "outer_ring_temperature": Q(label="temperature of the outer ring", digits=5),
+    "cage_temperature": Q(label="temperature of the cage", digits=5),
+    "coolant_out_temperature": Q(label="temperature of the coolant as it leaves", digits=5),
+    "flash_inner": Q(label="flash temperature, inner race"),
+    "flash_outer": Q(label="flash temperature, outer race"),
+    "track_heat": Q(label="heat into the hotter track, over its area", digits=2),
+    "boiling_limit": Q(label="heat flux that leaves a surface dry", digits=2),
+    "load": Q(label="load", symbol="Q", digits=4),
+    "contact_angle": Q(label="contact angle", head="angle", digits=4),
+    "semi_major": Q(label="semi-major axis a, across the groove", symbol="a", digits=4),
+    "semi_minor": Q(label="semi-minor axis b, along rolling", symbol="b", digits=4),
+    "max_pressure": Q(label="maximum Hertz pressure", head="pressure", symbol="p_0", digits=4),
+    "approach": Q(label="mutual approach", digits=4),
+    "rolling_speed": Q(label="rolling speed", digits=4),
+    "spin_roll_ratio": Q(label="pivoting to rolling ratio", head="spin/roll", form=".4f"),
+    "pressure": Q(label="pressure", symbol="p"),
+    "creep_spin": Q(label="creep by spin, s", digits=4),
+    "creep_curvature": Q(label="creep by curvature, q", digits=4),
+    "creep_ratio": Q(label="creep ratio", symbol="xi", unit="%"),
+    # Clearances of the cage.
+    "pocket_at_rest": Q(label="pocket clearance at rest", digits=4),
+    "pocket": Q(label="running pocket clearance", digits=4),
+    "pocket_axial_at_rest": Q(label="pocket clearance along the axis at rest", digits=4),
+    "pocket_axial": Q(label="running pocket clearance along the axis", digits=4),
+    "land_at_rest": Q(label="land clearance at rest", digits=4),
+    "land": Q(label="running land clearance", digits=4),
+    "temperature": Q(label="temperature", digits=4),
+    "cage_speed": Q(label="speed of the cage", digits=4),
+    "hoop_strain": Q(label="strain of the cage by rotation", unit="%"),
+    # Traction, restitution, mobility.
+    "slope": Q(label="slope of the traction curve", head="slope", symbol="alpha", digits=4),
+    "slope_error": Q(label="error of the slope", digits=2),
+    "ball_cage_stiffness": Q(label="stiffness of ball and pocket", symbol="k_BC", digits=4),
+    "cage_mass": Q(label="cage mass", symbol="M_C", digits=4),
+    "race_damping": Q(label="race damping", symbol="C_mu", digits=4),
+    "damping_ratio": Q(label="damping ratio", symbol="zeta", form=".3f"),
+    "restitution_factor": Q(label="restitution factor", symbol="eta", form=".3f"),
+    "restitution_factor_hertz": Q(label="restitution factor of a Hertzian pocket", form=".3f"),
+    "half_play": Q(label="half the pocket clearance along the orbit", head="half clearance", digits=4),
+    "orbital_share": Q(label="share of the speed variance in the harmonics used", unit="%", digits=4),
+    "free_rolling_offset": Q(label="free-rolling offset of the creep", digits=4),
+    "creep_increment": Q(label="creep increment", symbol="dxi", unit="%"),
+    "traction_coefficient": Q(label="traction coefficient", symbol="C_T", digits=4),
+    "along": Q(label="x along rolling"),
+    "across": Q(label="y across the groove", digits=2),
+    "film_thickness": Q(label="total thickness of the film"),
+    "race_friction": Q(label="race friction", symbol="f_BT"),
+    # Life.
+    "revolutions": Q(label="revolutions", form=".1e"),
+    "first_decile": Q(label="P(stable) of the first tenth", head="first tenth", form=".2f"),
+    "last_decile": Q(label="P(stable) of the last tenth", head="last tenth", form=".2f"),
+    "correlation": Q(label="rank correlation", form="+.2f"),
+    "draws": Q(label="bearings drawn"),
+    "coverage_calm": Q(label="coverage where deposit of a calm cage balances wear", unit="%", digits=2),
+    "coverage_whirling": Q(label="the same of a cage that whirls", unit="%", digits=2),
+    "film_time": Q(label="duty that an hour of the test wears the films for, in hours", digits=3),
+    "pocket_time": Q(label="duty that an hour of the test wears the pockets for, in hours", digits=3),
+    "wear_coefficient": Q(label="wear coefficient", head="wear"),
+    "wear_error": Q(label="standard error of the wear coefficient", head="error of wear", digits=2),
+    "damping": Q(label="damping, attitude of the spin held", symbol="C_f", digits=4),
+    "effective_mass": Q(label="effective mass", symbol="m_e", digits=4),
+    "damping_relaxed": Q(label="damping of a slow push", symbol="C_eff", digits=4),
+    "damping_locked": Q(label="damping with all spin held", digits=4),
+    "groove_damping": Q(label="damping across the orbit", symbol="c_g", digits=4),
+    "groove_stiffness": Q(label="stiffness across the orbit", symbol="k_g", digits=4),
+    "pocket_friction_effect": Q(
+        label="effect $k$ of pocket friction, 1 \N{PLUS-MINUS SIGN} $k$ $f$", digits=4
+    ),
+    "rates": Q(label="rate of a mode"),
+    "oscillations": Q(label="oscillation of a mode"),
+    "shares": Q(label="share of 1/$C_eff$"),
+    "capacity": Q(label="capacity of the races", symbol="F_max", digits=4),
+    "speed": Q(label="speed beyond free orbit", symbol="u", head="speed", digits=4),
+    "force_law": Q(label="force by the law", head="law", digits=4),
+    "law_error": Q(label="largest error of the law", unit="%", digits=2),
+    "asymmetry": Q(label="difference of forward and backward", unit="%", digits=2),
+    # Checked studies.
+    "mass": Q(label="mass", digits=4),
+    "lean": Q(label="lean of a pocket's contact, towards the bearing axis"),
+    "land_gap": Q(label="radial gap of the land", digits=4),
+    # Stability curves, maps and sweeps.
+    "ball_cage_friction": Q(label="ball/cage friction", symbol="f_BC", head="pocket friction"),
+    "critical_friction": Q(label="critical friction", ends=("scatter_low", "scatter_high")),
+    "critical_friction_low": Q(
+        label="lower end of the band", head="band low", ends=("low_scatter_low", "low_scatter_high")
+    ),
+    "critical_friction_high": Q(
+        label="upper end of the band", head="band high", ends=("high_scatter_low", "high_scatter_high")
+    ),
+    "kicks": Q(label="initial disturbances", unit="m/s", form=".3g"),
+    "middle_kick": Q(label="reference disturbance", unit="m/s", form=".3g"),
+    "band_few": Q(label="share of runs that whirl at the lower end of the band", unit="%"),
+    "runs": Q(label="runs", form=".0f"),
+    "most_runs": Q(label="most runs of a point", digits=7),
+    "agreeing_runs": Q(label="runs that agree", digits=7),
+    "wrong_side_probability": Q(label="risk of the wrong side", unit="%", digits=2),
+    "other_decision_probability": Q(label="risk of another decision", unit="%", digits=2),
+    "probability_whirl": Q(
+        label="share of the runs that whirl", digits=2, ends=("probability_low", "probability_high")
+    ),
+    "time_share": Q(label="share of the time", head="time", unit="%"),
+    "shaft_frequency": Q(label="shaft, 1x", unit="Hz"),
+    "cage_frequency": Q(label="cage and ball set, 1x", unit="Hz"),
+    "linear_whirl_frequency": Q(label="whirl without clearance", unit="Hz"),
+    "orbit_frequency": Q(label="orbit of whirling runs", unit="Hz"),
+    "below_margin": Q(label="with a margin below 0", unit="%"),
+    "refused": Q(label="without an answer", unit="%"),
+    # Runs of the cage.
+    "bearing_torque": Q(label="torque of the shaft with its running cage", digits=4),
+    "cage_torque": Q(label="torque by friction at pockets and lands"),
+    "pocket_heat": Q(label="heat of friction in the pockets"),
+    "pocket_share": Q(label="share of the power at the pockets", unit="%", digits=2),
+    "housing_frequency": Q(label="loudest third octave of a whirl, in the housing", digits=3),
+    "housing_share": Q(label="share of the power of a whirl in it", unit="%", digits=2),
+    "slower_torque": Q(label="torque at 0.8 of the speed", digits=4),
+    "torque_exponent": Q(label="exponent of torque against speed", form=".2f"),
+    "race_exponent": Q(label="the same of balls on races alone", form=".2f"),
+    "judged_from": Q(label="start of the judged part", digits=4),
+    "followed": Q(label="end of the judged part", digits=4),
+    "run_length": Q(label="length of the run", digits=4),
+    "given_restitution_factor": Q(label="restitution factor in place of the study's", symbol="eta", digits=4),
+    "tilt_phase": Q(label="phase of the tilt before the offset", form=".0f"),
+    "cage_slip": Q(label="slip of the cage", unit="%"),
+    "axial_half_play": Q(label="pocket clearance along the axis each way", digits=4),
+    "pocket_angle": Q(label="place of the pocket", head="place", digits=4),
+    "pocket_impacts": Q(label="impacts", form=".0f"),
+    "impacts_per_turn": Q(label="impacts per turn of the cage", form=".2f"),
+    "pocket_rubbing_power": Q(label="heat of rubbing", head="heat of rubbing"),
+    # Rankings and their verdicts.
+    "friction": Q(label="pocket friction", head="friction", symbol="f_BC", form=".3f"),
+    "restitution_threshold": Q(
+        label="restitution threshold",
+        head="threshold",
+        form=".2f",
+        meaning="largest restitution factor eta at which the cage is stable from the reference disturbance",
+    ),
+    "effective_restitution_factor": Q(label="effective restitution factor", form=".2f"),
+    "own_critical_friction": Q(
+        label="critical friction",
+        head="critical",
+        form=".3f",
+        meaning="friction at which half the runs whirl from the worst disturbance, with its own races",
+    ),
+    "safety_factor": Q(
+        label="safety factor", head="S", symbol="S", form=".2f", meaning="critical friction over friction"
+    ),
+    "margin": Q(label="margin", form="+.2f", meaning="threshold less the bearing's own eta"),
+    "probability_stable": Q(
+        label="P(stable)",
+        form=".2f",
+        ends=("probability_low", "probability_high"),
+        meaning="share of runs that settle, or roll in their pockets, from the worst disturbance",
+    ),
+    "paper_probability_stable": Q(label="P(stable) by the paper's model", head="P(stable)", form=".2f"),
+    "uncertain_probability_stable": Q(
+        label="P(stable) with the uncertain inputs drawn",
+        form=".2f",
+        ends=("uncertain_probability_low", "uncertain_probability_high"),
+    ),
+    "friction_scatter": Q(label="assumed scatter of friction", unit="%"),
+    "kick": Q(label="initial disturbance", unit="m/s", form=".3g"),
+    "largest_offset": Q(label="largest offset of the cage centre", head="largest offset"),
+    "mean_offset": Q(label="mean offset of the cage centre", head="mean offset"),
+    "largest_tilt": Q(label="largest tilt of the cage", head="tilt", unit="mrad"),
+    "growth_rate": Q(label="growth rate of the amplitude"),
+    "drift_rate": Q(label="drift rate", head="drift", digits=2),
+    "largest_contact_force": Q(label="largest force at a pocket", head="pocket force"),
+    "largest_land_force": Q(label="largest force on the land", head="land force"),
+    "rubbing_power": Q(label="power of rubbing on the land", head="rubbing", digits=2),
+    "whirl_frequency": Q(label="whirl frequency of the cage centre", head="whirl"),
+    "energy_imbalance": Q(label="energy imbalance", digits=2),
+    "pocket_clearance": Q(label="pocket clearance as it runs", digits=4),
+    "land_clearance": Q(label="land clearance as it runs", digits=4),
+    "slip_speed": Q(label="sliding speed of ball on pocket"),
+    "impact_force": Q(label="force of an impact at that speed"),
+    # Uncertain studies.
+    "mean": Q(label="mean", digits=4),
+    "share": Q(label="share of the variance", head="share", unit="%", form=".0f"),
+    "skill": Q(label="part of the deviance explained", head="skill", unit="%", form=".0f"),
+    "bearings": Q(label="bearings", form=".0f"),
+    "settles": Q(label="whether the cage settles", form=".0f"),
+    # Logs, materials and comparisons.
+    "standard_error": Q(label="standard error", digits=2),
+    "standard_deviation": Q(label="scatter", digits=2),
+    "degrees_of_freedom": Q(label="degrees of freedom", form=".0f"),
+    "effective_count": Q(label="independent values"),
+    "steady_rows": Q(label="rows of the steady part", form=".0f"),
+    "rows": Q(label="rows", form=".0f"),
+    "cycles": Q(label="whole cycles", form=".0f"),
+    "run_in_end": Q(label="end of running-in", head="running-in ends", digits=4),
+    "steady_end": Q(label="end of the steady part", head="steady until", digits=4),
+    "default_scatter": Q(label="assumed scatter", unit="%"),
+}
+
+SHARES = (
+    *("unstable_at_start", "never_unstable", "film_worn", "pocket_opened", "friction_risen"),
+    *("reservoir_empty", "film_sustained"),
+)
+"""Shares of drawn bearings."""
+
+QUANTITIES |= {name: Q(label=name.replace("_", " "), unit="%", digits=2) for name in SHARES}
+QUANTITIES |= {name: Q(label=name.upper(), unit="%") for name in ("stable", "unstable", "undecided")}
+QUANTITIES |= {
+    f"{one}_strain": Q(label=f"thermal strain, {one}", unit="%") for one in ("cage", "ball", "ring")
+}
+for _name in ("revolutions_10", "revolutions_50", "revolutions_90", "horizon"):
+    QUANTITIES[_name] = QUANTITIES["revolutions"]
+for _name in ("forward", "backward"):
+    QUANTITIES[f"force_{_name}"] = Q(label=f"force {_name}", head=f"F {_name}", digits=4)
+for _race, _end in (("inner", "in"), ("outer", "out")):
+    QUANTITIES |= {
+        f"heat_{_race}": Q(label=f"heat of friction, {_race} race", digits=4),
+        f"{_race}_damping": Q(label=f"damping of the {_race} race", digits=4),
+        f"slip_speed_{_race}": Q(label=f"slip speed, {_race} race", digits=4),
+        f"film_{_race}": Q(label=f"film on the {_race} track", head=f"film, {_race}", unit="um", form=".3f"),
+        f"{_race}_pass_frequency": Q(label=f"balls past the {_race} ring", unit="Hz"),
+    }
+    for _name in ("load", "contact_angle", "spin_roll_ratio", "max_pressure", "slope"):
+        _of = QUANTITIES[_name]
+        _label, _head = f"{_of.label} at the {_race} race", f"{_of.head or _of.label} {_end}"
+        _symbol = f"Q_{_race[0]}" if _name == "load" else ""
+        QUANTITIES[f"{_name}_{_race}"] = replace(_of, symbol=_symbol, label=_label, head=_head)
+for _name in ("race_damping", "damping_ratio", "restitution_factor"):
+    _label = f"{QUANTITIES[_name].label} if the ball may spin"
+    QUANTITIES[f"{_name}_free_spin"] = replace(QUANTITIES[_name], label=_label, symbol="")
 
 Of = Callable[[Any], Part | None]
 """From a row to the part that has a number; None where the row has none."""
@@ -36,10 +288,15 @@ def quantity(name: str) -> Quantity:
     return Quantity(label=key if is_known else f"{section.replace('.', ' ')} {key}", head=key)
 
 
+def ends_of(name: str) -> tuple[str, str]:
+    """Return the names of the ends of the interval of a quantity."""
+    return quantity(name).ends or (f"{name}_low", f"{name}_high")
+
+
 def estimate(part: Part, name: str) -> Number:
     """Return a number of a part, with its interval if it has one."""
     value = getattr(part, name)
-    low, high = quantity(name).ends or (f"{name}_low", f"{name}_high")
+    low, high = ends_of(name)
     if part.get(low) is None:
         return value  # type: ignore[no-any-return]
     return Estimate(value, part.get(low), part.get(high))
@@ -69,6 +326,11 @@ def fact(part: Part, name: str, label: str = "") -> tuple[str, Cell]:
     return begun(label or quantity(name).label), cell(part, name)
 
 
+def head_of(name: str) -> str:
+    """Return what stands above a column of a quantity."""
+    return quantity(name).head or quantity(name).label
+
+
 def column(
     name: str,
     *,
@@ -78,7 +340,6 @@ def column(
     is_short: bool = False,
 ) -> Column:
     """Return the column of a quantity; `of` finds in a row the part that has it; short: without intervals."""
-    known = quantity(name)
 
     def one(row: Any) -> Cell:
         found = cell(of(row), name, mark(row))
@@ -86,7 +347,7 @@ def column(
             return replace(found, value=found.value.value)
         return found
 
-    return Column(head or known.head or known.label, one, meaning=known.meaning)
+    return Column(head or head_of(name), one, meaning=quantity(name).meaning)
 
 
 def known_columns(columns: Iterable[Column], rows: Sequence[Any]) -> tuple[Column, ...]:
@@ -97,11 +358,7 @@ def known_columns(columns: Iterable[Column], rows: Sequence[Any]) -> tuple[Colum
 def place_column(part: Part, name: str, *, head: str = "") -> Column:
     """Return the column of a list of a part, for rows that are places in it."""
     known, unit = quantity(name), part.unit(name)
-    return Column(
-        head or known.head or known.label,
-        lambda place: Cell(getattr(part, name)[place], known, unit),
-        meaning=known.meaning,
-    )
+    return Column(head or head_of(name), lambda place: Cell(getattr(part, name)[place], known, unit))
 
 
 def places_table(
@@ -120,17 +377,15 @@ def all_numbers(name: str, heads: Sequence[str], rows: Iterable[tuple[Any, ...]]
         is_words = isinstance(value, str | bool)
         if is_words or isinstance(value, int | float):
             kinds[key] = is_words
-    ends = {end for key in kinds for end in quantity(key).ends or (f"{key}_low", f"{key}_high")}
-
-    def label(place: int) -> Column:
-        return Column(heads[place], lambda row: Cell(row[place], quantity(heads[place])))
+    ends = {end for key in kinds for end in ends_of(key)}
 
     def held(key: str) -> Column:
         if kinds[key]:
             return text_column(key.replace("_", " "), lambda row: row[-1].get(key))
         return Column(key.replace("_", " "), lambda row: cell(row[-1] if key in row[-1] else None, key))
 
-    columns = (*map(label, range(len(heads))), *(held(key) for key in kinds if key not in ends))
+    labels = (text_column(head, itemgetter(place)) for place, head in enumerate(heads))
+    columns = (*labels, *(held(key) for key in kinds if key not in ends))
     return Table(name, columns, known, level=Level.SHEET)
 
 

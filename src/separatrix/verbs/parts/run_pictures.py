@@ -1,14 +1,18 @@
-"""A run of the cage as numbers to draw: its boundaries, its path, its whirl, and the frames of a scene."""
+"""A run of the cage to draw: its path and boundaries, its course in time, its whirl, and a moving scene."""
 
 from __future__ import annotations
 
-from typing import Any
+from itertools import pairwise
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.interpolate import CubicHermiteSpline
 
 from separatrix.ground.document import Part
 from separatrix.ground.units import Array, Hertz, Metre
+from separatrix.present import figure as fig
+from separatrix.verbs.parts.quantity_text import axis, show
 
 AROUND = np.linspace(0.0, 2 * np.pi, 721)
 """Directions in which boundaries are drawn: half a degree apart."""
@@ -75,11 +79,6 @@ def largest_play(answer: Part) -> Metre | None:
     play, land = float(array(answer, "half_play").max()), land_boundary(answer)
     far = float(np.hypot(*array(answer, "position").T).max())
     return play if land is None or play <= BEYOND * max(far, float(land.max())) else None
-
-
-def axial_half_play(answer: Part) -> Metre:
-    """Return half the clearance of the pockets along the axis [m]; 0 for none."""
-    return float(answer.cage.axial_half_play or 0.0)
 
 
 def land_heights(answer: Part) -> Array:
@@ -165,7 +164,10 @@ def scene(answer: Part) -> dict[str, Any]:
     radius, pitch = float(cage.pitch_radius), 2.0 * np.pi * cage.pitch_radius / max(3, plays.size)
     ball = 0.5 * (float(cage.ball_diameter) or 0.75 * pitch)
     stated = answer.values["study"]["cage"]["width"]["value"]
-    half_width, axial_play = max(0.5 * float(stated or 0.0), WIDE * ball), axial_half_play(answer)
+    half_width, axial_play = (
+        max(0.5 * float(stated or 0.0), WIDE * ball),
+        float(answer.cage.axial_half_play or 0.0),
+    )
 
     def moved(name: str) -> list[int] | None:
         return whole(NANO * array(answer, name)[moments]) if name in answer else None
@@ -210,15 +212,21 @@ def scene(answer: Part) -> dict[str, Any]:
         "parts": [(float(time[one[0]]), float(time[one[-1]])) for one in parts],
         "time": [float(f"{one:.7g}") for one in time[moments]],
         "turned": np.mod(turned_by(cage, time[moments]), 2.0 * np.pi).round(4).tolist(),
-        "centre": moved("position"),
-        "lean": moved("lean"),
-        "axial": moved("axial_place"),
-        "rotation": moved("rotation"),
-        "lead": moved("ball_lead"),
-        "ballAxial": moved("ball_axial"),
+        **{key: moved(name) for key, name in MOVED.items()},
         "force": force,
         "landForce": land_force,
     }
+
+
+MOVED = {
+    "centre": "position",
+    "lean": "lean",
+    "axial": "axial_place",
+    "rotation": "rotation",
+    "lead": "ball_lead",
+    "ballAxial": "ball_axial",
+}
+"""Movements of a scene."""
 
 
 def whole(values: Array) -> list[int]:
@@ -230,3 +238,150 @@ def _largest_since(values: Array, moments: Array) -> Array:
     """Return the largest of some values between each moment and the one before it, from the first sample."""
     starts = np.concatenate([[0], moments[:-1] + 1])
     return np.asarray(np.maximum.reduceat(values[: moments[-1] + 1], starts))
+
+
+# The panels.
+
+SHOWN = 1600
+"""Points of a course in time, at most."""
+
+NEAR = 2.5
+"""Limits within this multiple of the largest value are drawn."""
+
+
+def orbit(answer: Part) -> fig.Panel:
+    """Return the centre's path between its boundaries, darker in the judged part.
+
+    Boundaries come before the path, the land wide and light: neither hides the other or a path along it.
+    """
+    path, land, play = smooth_path(answer), land_boundary(answer), largest_play(answer)
+    most = 1.12 * max(
+        float(np.abs(path).max()), play or 0.0, 0.0 if land is None else float(land.max()), 1e-9
+    )
+    marks: list[fig.Mark] = []
+    if land is not None:
+        marks.append(_around(land, "land clearance", colour=fig.VERMILION, width=3.5, opacity=0.45))
+    if play:
+        marks.append(_around(pocket_boundary(answer), "pocket clearance", width=0.8, line="--"))
+    first = FINE * int(np.searchsorted(array(answer, "time"), answer.judged_from))
+    first = first if answer.followed > answer.judged_from else 0
+    if first:
+        marks.append(_line(path[: first + 1], "path", colour=fig.SKY, width=0.35, opacity=0.8))
+    marks.append(_line(path[first:], "path, judged part" if first else "path", colour=fig.BLUE, width=0.7))
+    marks.append(_line(path[:1], "start", line="", marker="o", size=3.5))
+    marks.append(_line(path[-1:], "end", line="", marker="s", size=3.5, is_open=True))
+    unit = answer.unit("position")
+    x, y = (axis("position", unit, [most], label=one, low=-most, high=most) for one in "xy")
+    return fig.Panel(title="a  Cage centre, turning frame", x=x, y=y, marks=tuple(marks), is_to_scale=True)
+
+
+def _around(radius: Array, name: str, **look: Any) -> fig.Trace:
+    known = np.where(np.isfinite(radius), radius, np.nan)[:, np.newaxis]
+    return _line(known * np.stack([np.cos(AROUND), np.sin(AROUND)], axis=1), name, **look)
+
+
+def _line(path: Array, name: str, **look: Any) -> fig.Trace:
+    return fig.Trace(x=path[:, 0].tolist(), y=path[:, 1].tolist(), name=name, **look)
+
+
+class Course(NamedTuple):
+    """What is shown against time: its label, its values at the samples, and how its line looks."""
+
+    label: str
+    values: Array
+    colour: str = fig.BLUE
+    line: str = "-"
+
+
+Limits = dict[tuple[str, str], float | None]
+"""Name and colour of what a cage touches -> the value at which it does; None if it does so nowhere."""
+
+POCKETS, LAND = ("pockets", fig.BLACK), ("land", fig.VERMILION)
+
+
+def offset(answer: Part) -> fig.Panel:
+    """Return the offset of the centre against time, in space with the axial place of the cage."""
+    land = land_boundary(answer)
+    limits: Limits = {POCKETS: largest_play(answer), LAND: None if land is None else float(land.max())}
+    courses = [Course("offset", np.hypot(*array(answer, "position").T))]
+    courses += [Course("axial place", array(answer, "axial_place"), fig.GREEN)] if "lean" in answer else []
+    return _course(answer, "largest_offset", "c  Offset", courses, limits)
+
+
+def tilt(answer: Part) -> fig.Panel:
+    """Return the angle between the axes of cage and bearing; limits are those of a centred cage."""
+    cage, land = answer.cage, land_boundary(answer)
+    reach = float(land_heights(answer).max(initial=0.0)) + 0.5 * cage.land_width
+    at_land = None if land is None or not reach else float(land.max()) / reach
+    limits: Limits = {POCKETS: (cage.axial_half_play or 0.0) / cage.pitch_radius or None, LAND: at_land}
+    courses = [Course("tilt", np.hypot(*array(answer, "lean").T))]
+    return _course(answer, "largest_tilt", "e  Tilt", courses, limits)
+
+
+def forces(answer: Part) -> fig.Panel:
+    """Return the largest force of any pocket, and that of the lands, against time."""
+    pocket, land = array(answer, "contact_force").max(axis=1), array(answer, "land_force")
+    courses = [Course("pocket, largest", pocket)]
+    courses += [Course("land", land, fig.VERMILION, "--")] if np.any(land) else []
+    limits: Limits = {("races hold", fig.GREY): answer.get("force_limit")}
+    return _course(answer, "contact_force", "d  Forces", courses, limits, label="force")
+
+
+def _course(
+    answer: Part, name: str, title: str, courses: list[Course], limits: Limits, label: str = ""
+) -> fig.Panel:
+    """Return courses of one quantity against time, with the limits near to them and the judged part."""
+    time, every = array(answer, "time"), np.concatenate([one.values for one in courses])
+    near = NEAR * float(np.abs(every).max())
+    known = {one: value for one, value in limits.items() if value is not None and value <= near}
+    high = 1.12 * max([0.0, float(every.max()), *known.values()]) or 1e-12
+    low, first, until = min(0.0, 1.1 * float(every.min())), answer.judged_from, answer.followed
+    marks, labels = list[fig.Mark](), list[fig.Label]()
+    if until > first:
+        look: dict[str, Any] = {"colour": fig.GREY, "opacity": 0.2, "name": "judged part"}
+        marks.append(fig.Band(x=[first, until], low=[low, low], high=[high, high], **look))
+    for (touched, colour), value in known.items():
+        marks.append(fig.Across(at=value, axis="y", colour=colour, line="--"))
+        labels.append(fig.Label(y=value, text=touched, colour=colour))
+    for course in courses:
+        at = thinned(course.values)
+        x, y = time[at].tolist(), course.values[at].tolist()
+        marks.append(fig.Trace(x=x, y=y, colour=course.colour, line=course.line, width=0.8))
+        if len(courses) > 1:
+            labels.append(fig.Label(y=float(course.values[-1]), text=course.label, colour=course.colour))
+    label = label or ", ".join(course.label for course in courses)
+    return fig.Panel(
+        title=title,
+        x=axis("time", answer.unit("time"), [time[-1]], low=0.0, high=float(time[-1]) or 1e-3),
+        y=axis(name, answer.unit(name), [high], label=label, low=low, high=high),
+        marks=tuple(marks),
+        labels=tuple(labels),
+    )
+
+
+def thinned(values: Array, most: int = SHOWN) -> NDArray[np.intp]:
+    """Return the places of the least and the largest value of each part of a course, rising."""
+    if values.size <= most:
+        return np.arange(values.size)
+    edges = np.linspace(0, values.size, most // 2 + 1).astype(int)
+    ends = [a + end for a, b in pairwise(edges) for end in (values[a:b].argmin(), values[a:b].argmax())]
+    return np.unique([0, *ends, values.size - 1])
+
+
+def spectrum(answer: Part) -> fig.Panel:
+    """Return the two-sided spectrum of the centre's velocity; forward whirl turns as the balls do."""
+    most, (frequency, share) = spectrum_reach(answer), whirl_spectrum(answer)
+    seen = np.flatnonzero(np.abs(frequency) <= most)
+    at = seen[thinned(share[seen])]
+    marks: list[fig.Mark] = [fig.Across(at=0.0, colour=fig.GREY)]
+    title = "b  Whirl: velocity of the centre"
+    if "whirl_frequency" in answer and answer.whirl_direction:
+        title += f"; judged part {show(answer, 'whirl_frequency')}"
+        marks.append(
+            fig.Across(at=answer.whirl_direction * answer.whirl_frequency, colour=fig.VERMILION, line="--")
+        )
+    marks.append(fig.Trace(x=frequency[at].tolist(), y=share[at].tolist(), colour=fig.BLUE, width=0.8))
+    label, unit = "frequency; backward < 0 < forward", answer.unit("whirl_frequency")
+    x = axis("whirl_frequency", unit, [most], label=label, low=-most, high=most)
+    y = fig.Axis(label="relative amplitude [-]", low=0.0, high=1.18)
+    return fig.Panel(title=title, x=x, y=y, marks=tuple(marks))

@@ -1,0 +1,71 @@
+"""Wear coefficient of a sample from the wear depth that a tribometer logged: K = depth/(pressure x way)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from separatrix.friction.logs.column_map import Conditions
+from separatrix.friction.logs.log import RawLog
+from separatrix.ground.units import Array, Ratio, SpecificWear
+
+STRETCHES = 12
+"""Of the steady part, through whose means a straight line goes: its neighbours differ independently."""
+
+SURE = 2.0
+"""Growth of the depth over its standard error from which it counts as wear."""
+
+NO_GROWTH = (
+    "The wear depth does not grow beyond its noise over the steady part (heat moves it, too): no wear "
+    "coefficient."
+)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SampleWear:
+    """Wear of one test over its steady part, by Archard's law."""
+
+    wear_coefficient: SpecificWear | None  # of the sample; null where depth, way or pressure is not known
+    wear_error: SpecificWear | None  # its standard error by the noise of the depth
+    wear_share: Ratio | None  # of the way of the log that is the steady part
+
+
+NO_WEAR = SampleWear(wear_coefficient=None, wear_error=None, wear_share=None)
+
+
+def slid(log: RawLog, conditions: Conditions) -> Array | None:
+    """Way slid at each row [m]: that of the log, else speed times time; None where neither is known."""
+    if log.distance is not None:
+        return np.asarray(log.distance, dtype=float)
+    speed = log.slip_speed
+    if speed is not None and log.time is not None and np.isfinite(speed).all():
+        steps = 0.5 * np.abs(speed[1:] + speed[:-1]) * np.diff(log.time)
+        return np.concatenate(([0.0], np.cumsum(steps)))
+    if conditions.slip_speed is not None and log.time is not None:
+        return np.asarray(conditions.slip_speed * log.time)
+    return None
+
+
+def sample_wear(log: RawLog, conditions: Conditions, steady: slice) -> SampleWear:
+    """Wear coefficient of a test at its mean pressure; none where it is not known or depth does not grow."""
+    way, pressure = slid(log, conditions), conditions.pressure
+    if log.wear_depth is None or way is None or pressure is None:
+        return NO_WEAR
+    depth, along = np.asarray(log.wear_depth)[steady], way[steady]
+    there = np.isfinite(depth) & np.isfinite(along)
+    if there.sum() < 2 * STRETCHES:
+        return NO_WEAR
+    x, y = (
+        np.array([part.mean() for part in np.array_split(each[there], STRETCHES)]) for each in (along, depth)
+    )
+    across = float(((x - x.mean()) ** 2).sum())
+    if across == 0.0:
+        return NO_WEAR
+    slope = float(((x - x.mean()) * y).sum()) / across
+    rest = y - y.mean() - slope * (x - x.mean())
+    error = float(np.sqrt((rest**2).sum() / (STRETCHES - 2) / across))
+    if slope <= SURE * error:
+        return NO_WEAR
+    share = float((along[-1] - along[0]) / (way[-1] - way[0]))
+    return SampleWear(wear_coefficient=slope / pressure, wear_error=error / pressure, wear_share=share)
