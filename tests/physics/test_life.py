@@ -15,7 +15,7 @@ from separatrix.chain.slip_work import TrackWork, track_work
 from separatrix.chain.solution import solve
 from separatrix.study.study import Film, KinematicModel, Race, WearRates
 from separatrix.verdict.crossing import PLACES, Count, steepness
-from separatrix.verdict.life_table import Node, _accelerated, _bearing_wear, life
+from separatrix.verdict.life_table import Node, _accelerated, _bearing_wear, _drawn, _tests, life, wear_rates
 from separatrix.verdict.wear_life import (
     THICKEST,
     BearingWear,
@@ -250,6 +250,22 @@ def test_what_a_duty_cycle_refuses(cases, line):
     rates = WearRates(film_wear=5e-18, cage_wear=1e-15, bare_friction=0.35)
     with pytest.raises(separatrix.InputError, match=line):
         life(replace(study, wear=rates), revolutions=1e6, draws=64, cases=cases)
+
+
+def test_wear_of_the_library_scatters_over_its_range_else_by_ten():
+    """Log-normal with 95 % between the ends: at 2.5, 50 and 97.5 % of 4096 Sobol draws, to 2 %."""
+    study = separatrix.read_study("momentum-wheel")
+    candidate, given = study.ranking.candidates[0], WearRates(bare_friction=0.35, cage_wear=2e-15)
+    rates, solution = wear_rates(study, given, candidate), solve(study, candidate)
+    draws, inputs, _ = _drawn(solution, given, rates, candidate, 4096)
+    shares = (0.025, 0.5, 0.975)
+    ends = [5e-18, math.sqrt(5e-18 * 4e-15), 4e-15]  # MoS2: endurance of a bearing, run-in of a tribometer
+    assert np.quantile(draws.film_wear, shares) == pytest.approx(ends, rel=0.02)
+    assert np.quantile(draws.cage_wear, shares) == pytest.approx([2e-16, 2e-15, 2e-14], rel=0.02)
+    assert {"wear.film_wear", "wear.cage_wear"} <= set(inputs)
+    (note,) = _tests(rates, solution)
+    assert note.startswith("[wear] film_wear: 1.4e-07 mm3/(N m) of MoS2 sputtered dense in the library")
+    assert note.endswith("on the races, vacuum.")
 
 
 def test_a_reservoir_is_that_of_esa():

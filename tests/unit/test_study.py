@@ -275,7 +275,9 @@ def test_the_page_on_study_files_is_complete_and_its_examples_are_right(read):
     rows = table.replace("|", ","), table.replace("|", ",").replace("(", ",")
     listed = {word.strip() for one in rows for word in one.split(",")}
     assert {unit for known in UNITS.values() for unit in known} <= listed
-    variant, wear, candidate = (block.partition("```")[0] for block in page.split("```toml\n")[1:])
+    blocks = [block.partition("```")[0] for block in page.split("```toml\n")[1:]]
+    variant, catalogue, wear, candidate = blocks
     assert read(BASE + wear).film.wear.width == pytest.approx(2e-4)
     assert read(variant).operation.axial_load == 1500.0
+    assert read(f'extends = "ball-218"\n{catalogue}').bearing.ball_diameter == 0.003969
     assert read(BASE + candidate).ranking.candidates[0].name == "My compound"

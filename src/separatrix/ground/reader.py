@@ -210,7 +210,7 @@ def _over(schema: type, base: Document, variant: Document) -> Document:
         if one is not None and is_section and isinstance(value, dict) and isinstance(below, dict):
             dropped = set(_dropped(one.key.form or one.hint, value))
             data[name] = {key: item for key, item in below.items() if key not in dropped} | value
-            own |= {(name, key) for key in value}
+            own |= {(name, key) for key in (*value, *dropped)}
         else:
             data[name] = value
             own.add((name,))
@@ -230,6 +230,8 @@ def _dropped(section: Any, variant: Mapping[str, Any]) -> Iterator[str]:
         if isinstance(rule, OneOf) and any(key in variant for group in rule.groups for key in group):
             others = (group for group in rule.groups if not any(one in variant for one in group))
             yield from (key for group in others for key in group)
+    for name, keys in getattr(section, "REPLACED", {}).items():
+        yield from keys if name in variant else ()
     for name, one in keys_of(section).items():
         for only in one.key.only:
             try:

@@ -349,6 +349,7 @@ HABITS = {unit: unit for unit in QUANTITIES} | {
     "Pa s": "uPa s",
     "kg m": "g mm",
     "kg m2": "kg mm2",
+    "m3/(N m)": "mm3/(N m)",
 }
 """The unit that an engineer would write."""
 

@@ -67,11 +67,22 @@ class Material:
     """Limits of its numbers at the study's temperature, as sentences."""
 
 
+GEOMETRY = (
+    *("bore", "ball_count", "ball_diameter", "pitch_diameter", "contact_angle", "radial_clearance"),
+    *("inner_conformity", "outer_conformity"),
+)
+"""Keys that a designation may fill; one in a variant replaces those of the study that it extends."""
+
+
 @record
 class BallBearing:
     """Geometry and materials of a single-row ball bearing."""
 
     RULES: ClassVar = (one_of("contact_angle", "radial_clearance", required=True),)
+    REPLACED: ClassVar = {"designation": GEOMETRY}
+
+    designation: str | None = key(default=None, without="not given: the geometry is")
+    """Name of a bearing of the library, which fills the geometry below as far as its source states it."""
 
     ball_diameter: Metre = key(positive(1e-5, 10.0), example='"11.1125 mm"')
     pitch_diameter: Metre = key(positive(1e-5, 100.0), example='"65 mm"')
@@ -98,6 +109,8 @@ class BallBearing:
     )
     ball_material: Material = key(named="bearing material", example='"440C"')
     ring_material: Material = key(named="bearing material", example='"440C"')
+    record: Mapping[str, Any] | None = field(default=None, compare=False, repr=False)
+    """The library's whole record of the designation."""
 
     @property
     def free_angle(self) -> Radian:

@@ -162,7 +162,7 @@ def _origins(loaded: Loaded[Study], document: Document) -> dict[str, str]:
         if len(path) != 2 and path[:2] != ("film", "wear"):
             continue
         value = document.written(path)
-        is_plain = not isinstance(value, dict | list) or path in loaded.distributions
+        is_plain = not isinstance(value, dict | list | None) or path in loaded.distributions
         origins[".".join(map(str, path))] = place + (f": {written(value)}" if is_plain else "")
     for key, name, follows in DERIVED:
         if key in origins:

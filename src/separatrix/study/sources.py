@@ -99,6 +99,8 @@ def _value(study: Study, record: object, section: str, name: str) -> dict[str, o
     item = {"value": plain, **({"unit": unit} if unit else {})}
     if key == "operation.fluid" and study.fluid is not None:
         item["record"] = study.fluid
+    if key == "bearing.designation" and study.bearing.record is not None:
+        item["record"] = study.bearing.record
     if key in study.distributions:
         item["distribution"] = _distribution(study.distributions[key], unit)
     return _with_origin(study, key, item)

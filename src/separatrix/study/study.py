@@ -52,6 +52,7 @@ from separatrix.study.cage_design import PocketContact as PocketContact
 from separatrix.study.candidates import Candidate as Candidate
 from separatrix.study.candidates import RankingQuestion as RankingQuestion
 from separatrix.study.candidates import RankingSection, read_ranking
+from separatrix.study.catalogue import read_bearing
 from separatrix.study.cooling import Cooling as Cooling
 from separatrix.study.distribution import Distribution
 from separatrix.study.film import ContactPressure as ContactPressure
@@ -238,7 +239,7 @@ class Study:
     """Files with your own materials."""
 
     operation: Operation = key()
-    bearing: BallBearing = key()
+    bearing: BallBearing = key(read=read_bearing)
     kinematics: Kinematics = key(default=Kinematics())
     film: Film = key()
     traction: TractionSettings = key(default=TractionSettings())

@@ -28,6 +28,7 @@ Names of the library: separatrix materials list
 EXAMPLES = {
     "extends": '"base.toml"',
     "library": '"materials.toml"',
+    "bearing.designation": '"608"',
     "bearing.radial_clearance": '"10 um"',
     "operation.tilt": '"0 mrad"',
     "operation.moment": '"0 N m"',
@@ -62,6 +63,10 @@ EXAMPLES = {
     f"{CANDIDATES}.material": '{ elastic_modulus = "5 GPa", poisson_ratio = 0.4 }',
 }
 """Values of the bearing of the template for keys that are off there, where the default shows nothing."""
+
+
+NAMED = {("ranking", "friction"): "friction table", ("bearing", "designation"): "bearing"}
+"""Keys that name a record of the library and are read in a form of their own, and its kind."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -100,8 +105,7 @@ class StudyKey:
         """Values to choose from, of which one must be taken if `is_word`."""
         if self.is_word:
             return tuple(str(option.value) for option in self.one.hint)
-        is_table = (self.section, self.name) == ("ranking", "friction")
-        kind = "friction table" if is_table else self.one.key.named
+        kind = NAMED.get((self.section, self.name), self.one.key.named)
         return Library().names(kind) if kind else ()
 
     @property

@@ -227,8 +227,8 @@ VERB = Verb(
     name="life",
     compute=compute,
     page=page,
-    epilog="Needs [wear]: the wear coefficients of film and cage. A coefficient without a distribution "
-    "scatters by a factor of ten either way.",
+    epilog="Needs [wear]; wear coefficients of film and cage that it lacks are those of the library. A "
+    "coefficient without a distribution or a range scatters by a factor of ten either way.",
     options=Options,
     needs=("cage",),
     moves_a_cage=True,

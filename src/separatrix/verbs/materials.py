@@ -35,7 +35,9 @@ if TYPE_CHECKING:
 
 EPILOG = "Records of materials.toml in the current folder are read too, as they are for a study there."
 
-Kind = Annotated[str | None, Option("bearing material, cage material, film, fluid, friction table.", "KIND")]
+Kind = Annotated[
+    str | None, Option("bearing material, cage material, film, fluid, friction table, bearing.", "KIND")
+]
 Libraries = Annotated[tuple[str, ...], Option("A library file to read too; may be repeated.", "PATH")]
 
 
@@ -51,7 +53,7 @@ class ListOptions:
 class ShowOptions:
     """What `materials show` takes."""
 
-    name: Annotated[str, Option("A material, film, fluid or friction table.", "NAME", True)]
+    name: Annotated[str, Option("A material, film, fluid, friction table or bearing.", "NAME", True)]
     kind: Kind = None
     library: Libraries = ()
 
@@ -94,11 +96,11 @@ def records_of(library: Library, kind: str | None) -> list[Record]:
 
 
 def records_named(library: Library, records: Sequence[Record], name: str) -> list[Record]:
-    """Return the records of a name, a fluid also by another name of it; refused if there is none."""
+    """Return the records of a name, fluids and bearings also by other names; refused if there is none."""
+    spelled = [one for one in records if one.kind in ("fluid", "bearing")]
     found = [one for one in records if one.name == name]
-    fluid = library.fluid(name) if any(one.kind == "fluid" for one in records) else None
-    if found or fluid is not None:
-        return found or [fluid]  # type: ignore[list-item]
+    if found := found or [one for one in spelled if library.named(one.kind, name) == one.name]:
+        return found
     kinds = {one.kind for one in records}
     rule = f"is not a {kinds.pop() if len(kinds) == 1 else 'record'} of the library"
     raise InputError("NAME", rule, shown(name), nearest(name, [one.name for one in records]))
@@ -122,7 +124,7 @@ def _document(which: str, **content: object) -> Document:
     return {"separatrix_version": __version__, "verb": f"materials {which}", **content}
 
 
-SEVERAL = "Of several data of a property the first is listed: `show NAME` has all. Confidence is that in E."
+SEVERAL = "Of several data the first is listed: `show NAME` has all. Confidence is that in E or D."
 
 
 # --- the pages ----------------------------------------------------------------------------------
@@ -155,8 +157,9 @@ def _data(record: Part, key: str = "elastic_modulus") -> list[Part]:
 
 
 def _sure(record: Part) -> str:
-    """Return how sure a friction table or an elastic modulus is."""
-    known = [one.confidence for one in _data(record)] or [record.get("confidence") or ""]
+    """Return how sure a friction table, an elastic modulus or a ball diameter is."""
+    data = _data(record) or _data(record, "ball_diameter")
+    known = [one.confidence for one in data] or [record.get("confidence") or ""]
     return str(known[0]).partition(";")[0]
 
 
@@ -166,6 +169,12 @@ COLUMNS = (
     _first("E", "elastic_modulus", MODULUS),
     _first("nu", "poisson_ratio", RATIO),
     _first("boils at", "boiling_temperature"),
+    _first("bore", "bore", Quantity(label="", form=".4g")),
+    _first("balls", "ball_count", Quantity(label="", form=".0f")),
+    _first("D", "ball_diameter", Quantity(label="", form=".4g")),
+    _first("d_m", "pitch_diameter", Quantity(label="", form=".5g")),
+    _first("angle", "contact_angle", Quantity(label="", form=".3g")),
+    _first("wear", "wear_coefficient", Quantity(label="", form=".2g")),
     text_column("E at", lambda one: "".join(_span(at.temperature, "K") for at in _data(one)[:1])),
     text_column("confidence", _sure),
     text_column("library", lambda one: one.library.file),
@@ -214,16 +223,17 @@ def _properties(record: Part) -> Iterator[tuple[str, str]]:
     """Yield every datum with its range, conditions, confidence and source."""
     for key in record.data.values:
         for datum in _data(record, key):
-            words = ", ".join(filter(None, _stated(key, datum)))
+            lasts = record.kind == "bearing" or key in POINTS
+            words = ", ".join(filter(None, _stated(datum, lasts=lasts)))
             yield WORDS.get(key, key.replace("_", " ")), f"{words}; {datum.confidence}: {datum.source}"
 
 
-def _stated(key: str, datum: Part) -> Iterator[str | None]:
-    """Yield value, range and conditions of a datum in words."""
+def _stated(datum: Part, *, lasts: bool) -> Iterator[str | None]:
+    """Yield value, range and conditions of a datum in words; no temperature of one that has none."""
     unit = datum.get("unit")
     span = f" ({_span(datum.range, unit)})" if datum.range else ""
     yield alone(datum.value, PROPERTY, unit) + span
-    yield _span(datum.temperature, "K") or ("" if key in POINTS else "at no stated temperature")
+    yield _span(datum.temperature, "K") or ("" if lasts else "at no stated temperature")
     yield from (datum.medium, datum.form)
     yield None if datum.pressure is None else alone(datum.pressure, Quantity(label="", digits=6), "Pa")
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import itertools
 import math
-from collections.abc import Container, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -18,10 +18,11 @@ from separatrix.cage.moving_cage import moving_cage
 from separatrix.cage.outcome import RunOutcome
 from separatrix.chain.slip_work import track_work
 from separatrix.chain.solution import Solution, solve
-from separatrix.ground.errors import InputError
+from separatrix.ground.errors import InputError, together
 from separatrix.ground.units import Array, Hertz, Metre, RadianPerSecond, Ratio, Watt, format_quantity
 from separatrix.study.candidates import reference_candidate
 from separatrix.study.study import BallModel, Candidate, Race, StabilitySettings, Study, WearRates
+from separatrix.study.wear_rates import WearRate, library_rate
 from separatrix.verdict.crossing import SEARCHED_FRICTION
 from separatrix.verdict.draws import (
     Case,
@@ -78,7 +79,7 @@ CALM, WHIRLING = 0.6, 1.5
 
 WORK_RUNS = 16
 DECADE: Ratio = 10.0
-"""Factor either way, 95 %, by which a wear coefficient scatters that the study states without one: bearings
+"""Factor either way, 95 %, by which a wear coefficient scatters that is stated without a range: bearings
 agree with tests to a factor of ten (ESTL, 44th AMS 2018, pp. 518-524)."""
 
 RATES = ("wear.film_wear", "wear.cage_wear")
@@ -137,7 +138,8 @@ def life(
     Raises
     ------
     InputError
-        The study has no [wear], no film, no cage, or no friction of it; or the duty cycle is none.
+        The study has no [wear], no film, no cage, no friction or wear coefficient of them; or the duty cycle
+        is none.
     Interrupted
         Before the table was finished; its runs are kept.
     """
@@ -147,7 +149,9 @@ def life(
         raise InputError("[film] thickness", "is missing: bare races have no film that wears")
     candidate = reference_candidate(study, study.ranking) if study.ranking else None
     solution, runner = solve(study, candidate), runner or Runner()
-    worn, inputs, fixed = _drawn(solution, study.wear, candidate, draws)
+    rates = wear_rates(study, study.wear, candidate)
+    assumed = [name for name, one in rates.items() if one.range is None and name not in study.distributions]
+    worn, inputs, fixed = _drawn(solution, study.wear, rates, candidate, draws)
     if max(worn.thickness.max(), THICKEST) > MOST_COVERS * worn.coverage.min():
         rule = f"must be above a {MOST_COVERS:g}th of any film, {format_quantity(THICKEST, 'm')} by transfer"
         raise InputError("[wear] coverage_thickness", rule, format_quantity(float(worn.coverage.min()), "m"))
@@ -169,7 +173,7 @@ def life(
     def answer(found: Mapping[Place, Node]) -> Life:
         if len(found) < len(places):
             raise Interrupted
-        notes = [*_notes(found, fixed, study.distributions), *solution.notes]
+        notes = [*_notes(found, fixed, assumed), *_tests(rates, solution), *solution.notes]
         each = [
             Phase(
                 share=one.share,
@@ -193,6 +197,43 @@ def life(
             (phases[place[0]] if place[0] < len(phases) else test or phases[0]).settings
         ),
     )
+
+
+def wear_rates(study: Study, wear: WearRates, candidate: Candidate | None) -> dict[str, WearRate]:
+    """Wear coefficients of film and cage by their keys: those of the study, else of the library.
+
+    Raises
+    ------
+    InputError
+        Neither has one.
+    """
+    own = (candidate and candidate.material) or (study.cage and study.cage.material) or None
+    cage = candidate.name if candidate else "the cage"
+    asked = (wear.film_wear, study.film.material, "the film"), (wear.cage_wear, own, cage)
+    found, problems = dict[str, WearRate](), list[InputError]()
+    for key, (given, material, what) in zip(RATES, asked, strict=True):
+        rate = library_rate(material) if given is None else WearRate(given)
+        if rate is None:
+            name = material.name if material is not None and material.record else what
+            rule = f"is missing, and the library has no wear coefficient of {name}"
+            problems.append(InputError(f"[wear] {key.removeprefix('wear.')}", rule, cure=TEST))
+        else:
+            found[key] = rate
+    if problems:
+        raise together(problems)
+    return found
+
+
+def _tests(rates: Mapping[str, WearRate], solution: Solution) -> Iterator[str]:
+    """Sentences on wear coefficients of the library: conditions of their tests, and of the bearing."""
+    at, state = solution.study.operation, solution.bearing
+    pressure = max(one.ellipse.max_pressure for one in (state.inner, state.outer))
+    temperature = "" if at.temperature is None else format_quantity(at.temperature, "K")
+    for key, rate in rates.items():
+        film = f"{format_quantity(pressure, 'Pa')} on the races" if key == "wear.film_wear" else ""
+        here = ", ".join(filter(None, [temperature, film, at.fluid])) or "no stated temperature or medium"
+        if rate.test:
+            yield f"[wear] {key.removeprefix('wear.')}: {rate.test}; this bearing: {here}."
 
 
 def _load(settings: StabilitySettings) -> Load:
@@ -315,7 +356,11 @@ def _table(found: Mapping[Place, Node], phase: int, frictions: Array, clearances
 
 
 def _drawn(
-    solution: Solution, wear: WearRates, candidate: Candidate | None, draws: int
+    solution: Solution,
+    wear: WearRates,
+    rates: Mapping[str, WearRate],
+    candidate: Candidate | None,
+    draws: int,
 ) -> tuple[Worn, dict[str, Array], list[str]]:
     """Draws of what wear depends on, those that are uncertain by name, and uncertain inputs that stay."""
     study = solution.study
@@ -329,8 +374,7 @@ def _drawn(
         raise InputError("[cage] ball_cage_friction", "is not known", cure=cure)
     mean = frictions[Case(candidate.name)].mean if candidate and own else friction.mean
     values = {
-        "wear.film_wear": wear.film_wear,
-        "wear.cage_wear": wear.cage_wear,
+        **{name: rate.value for name, rate in rates.items()},
         "wear.transferred": wear.transferred,
         "film.thickness": study.film.thickness or 0.0,  # bare races are refused
         "wear.coverage_thickness": wear.coverage_thickness,
@@ -346,8 +390,9 @@ def _drawn(
     for place, (name, value) in enumerate(values.items()):
         if name in known:
             column = known[name].quantile(points[:, place])
-        elif name in RATES:
-            column = value * np.exp(math.log(DECADE) / 1.96 * ndtri(points[:, place]))
+        elif name in rates:
+            low, high = rates[name].range or (value / DECADE, value * DECADE)
+            column = math.sqrt(low * high) * (high / low) ** (0.5 / 1.96 * ndtri(points[:, place]))
         else:
             column = np.full(draws, value)
         columns.append(column)
@@ -359,10 +404,10 @@ def _drawn(
     return Worn(*columns), inputs, fixed
 
 
-def _notes(found: Mapping[Place, Node], fixed: list[str], stated: Container[str]) -> list[str]:
+def _notes(found: Mapping[Place, Node], fixed: list[str], assumed: list[str]) -> list[str]:
     notes = [note for one in found.values() for note in one.notes]
-    if rates := [name for name in RATES if name not in stated]:
-        words = ", ".join(name.removeprefix("wear.") for name in rates)
+    if assumed:
+        words = ", ".join(name.removeprefix("wear.") for name in assumed)
         notes.append(f"Stated without a distribution, a factor of {DECADE:g} either way is assumed: {words}.")
     if fixed:
         notes.append(f"Uncertain inputs at their means: {', '.join(fixed)}.")

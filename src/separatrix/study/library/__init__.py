@@ -1,4 +1,4 @@
-"""Named materials, fluids and friction tables, each number with its source, conditions and confidence.
+"""Materials, fluids, friction tables and bearings by name, each number with source, conditions, confidence.
 
 The shipped data are the TOML files in `data/`; libraries of the user have the same form
 (docs/reference/materials.md). A `Library` has the shipped records, and over them those of the user's files.
@@ -17,7 +17,7 @@ from separatrix.friction.friction_file import LEAST_FRICTION
 from separatrix.friction.friction_law import GIVEN, SCATTER_CURE, SCATTER_RULE, Friction
 from separatrix.ground import reader
 from separatrix.ground.errors import DataError, InputError
-from separatrix.ground.schema import Fault, Faults, Open, between, check, key, keys_of, record
+from separatrix.ground.schema import Fault, Faults, Open, between, check, key, keys_of, one_of, record
 from separatrix.ground.toml import Kind, folded, label_of, nearest, read_text
 from separatrix.ground.units import (
     Kelvin,
@@ -28,9 +28,9 @@ from separatrix.ground.units import (
     printable,
     shown,
 )
-from separatrix.study.ball_bearing import ROOM, Expansion, Material
+from separatrix.study.ball_bearing import MOST_BALLS, ROOM, Expansion, Material
 
-KINDS = ("bearing material", "cage material", "film", "fluid", "friction table")
+KINDS = ("bearing material", "cage material", "film", "fluid", "friction table", "bearing")
 """Kinds of records; in a file the section is the same word with an underscore."""
 
 CONFIDENCES = ("measured", "maker", "literature", "handbook", "guess")
@@ -105,6 +105,9 @@ class Solid:
     thermal_expansion: Annotated[Data, "m/m/K"] = data(-1e-4, 1e-3, default=())
     """Mean from 293 K."""
 
+    wear_coefficient: Annotated[Data, "m3/(N m)"] = data(1e-24, 1e-6, default=())
+    """Worn volume over load and sliding distance, on steel; `form` has the rig."""
+
     aliases: tuple[str, ...] = key(default=(), length=(1, 20))
     composition: str | None = key(default=None, letters=LONG)
     remark: str | None = key(default=None, letters=LONG)
@@ -142,8 +145,30 @@ def _coolprop_is_a_pure_fluid(coolprop: str) -> Faults:
         yield Fault("coolprop", "must be the plain name of a pure fluid, letters and digits")
 
 
+@record
+class Bearing:
+    """Geometry of a bearing under its designation, as far as a source states it."""
+
+    RULES: ClassVar = (one_of("contact_angle", "radial_clearance"),)
+
+    bore: Annotated[Data, "m"] = data(1e-6, 100.0, default=())
+    ball_count: Annotated[Data, "-"] = data(3.0, MOST_BALLS)
+    ball_diameter: Annotated[Data, "m"] = data(1e-5, 10.0)
+    pitch_diameter: Annotated[Data, "m"] = data(1e-5, 100.0)
+    contact_angle: Annotated[Data, "rad"] = data(0.0, 1.57, default=())
+    radial_clearance: Annotated[Data, "m"] = data(0.0, 1e-2, default=())
+    inner_conformity: Annotated[Data, "-"] = data(0.5, 0.6, default=())
+    outer_conformity: Annotated[Data, "-"] = data(0.5, 0.6, default=())
+    aliases: tuple[str, ...] = key(default=(), length=(1, 20))
+    remark: str | None = key(default=None, letters=LONG)
+    replaces: bool = key(default=False)
+
+
 UNITS = {
-    name: one.unit for owner in (Solid, Fluid) for name, one in keys_of(owner).items() if one.hint == Data
+    name: one.unit
+    for owner in (Solid, Fluid, Bearing)
+    for name, one in keys_of(owner).items()
+    if one.hint == Data
 }
 """SI unit of each property."""
 
@@ -242,6 +267,7 @@ class Content:
     film: Mapping[str, Solid] = key(default={})
     fluid: Mapping[str, Fluid] = key(default={})
     friction_table: Mapping[str, FrictionTable] = key(default={})
+    bearing: Mapping[str, Bearing] = key(default={})
 
 
 @check(Content)
@@ -268,7 +294,7 @@ class Record:
     kind: str
     name: str
     content: Any
-    """`Solid`, `Fluid` or `FrictionTable`, by the kind."""
+    """`Solid`, `Fluid`, `FrictionTable` or `Bearing`, by the kind."""
 
     file: LibraryFile
     place: str
@@ -368,13 +394,14 @@ def contradictions(record: Mapping[str, Any], temperature: Kelvin) -> Iterator[s
 
 # --- the library ----------------------------------------------------------------------------------
 SHIPPED_FILES = {
-    "bearing material": "bearing_materials.toml",
-    "cage material": "cage_materials.toml",
-    "film": "films.toml",
-    "fluid": "fluids.toml",
-    "friction table": "pin-on-disk-77K.toml",
+    "bearing material": ("bearing_materials.toml",),
+    "cage material": ("cage_materials.toml",),
+    "film": ("films.toml",),
+    "fluid": ("fluids.toml",),
+    "friction table": ("pin-on-disk-77K.toml", "friction-in-vacuum.toml"),
+    "bearing": ("bearings.toml",),
 }
-"""Shipped file of each kind; each is read when it is first used."""
+"""Shipped files of each kind; they are read when they are first used."""
 
 BESIDE = "materials.toml"
 """Name of a library that is read where it is beside a study."""
@@ -448,6 +475,8 @@ def as_material(record: Record, temperature: Kelvin | None = None) -> Material:
     # numbers on which any answer depends
     acting = ("elastic_modulus", "poisson_ratio", *["density"] * (record.kind == "bearing material"))
     taken = {key: data[key].index(choice.datum) for key, choice in chosen.items()}
+    if wear := solid.wear_coefficient:
+        taken["wear_coefficient"] = wear.index(choose(wear, temperature, "").datum)
     expansions = (
         Expansion(*(d.temperature or (ROOM, ROOM)), d.value, d.confidence) for d in solid.thermal_expansion
     )
@@ -528,8 +557,9 @@ def _header(record: Record) -> str:
 @cache
 def shipped_records(kind: str) -> Records:
     """Records of one kind that come with the package, by name."""
-    records = read_library(Path(__file__).with_name("data") / SHIPPED_FILES[kind], shipped=True)
-    return {record.name: record for record in records}
+    folder = Path(__file__).with_name("data")
+    files = (read_library(folder / name, shipped=True) for name in SHIPPED_FILES[kind])
+    return {record.name: record for records in files for record in records}
 
 
 def with_files(paths: Iterable[Path]) -> Library:

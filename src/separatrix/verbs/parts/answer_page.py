@@ -200,8 +200,9 @@ def bearing_facts(answer: Part) -> list[tuple[str, str]]:
     contact = f"{entry_words(at['contact_angle'])} without load; {steels}; groove radius over ball diameter"
     size = f"pitch diameter {entry_words(at['pitch_diameter'])}"
     traction = (f"{key.replace('_', ' ')} {one['value']}" for key, one in study["traction"].items())
+    name = stated(study, "bearing", "designation")
     return [
-        ("Bearing", _listed(", ", balls, size, bore and f"bore {bore}")),
+        ("Bearing", _listed(", ", name, balls, size, bore and f"bore {bore}")),
         ("Contact angle", f"{contact} {grooves}"),
         ("Operation", operation_words(study)),
         ("Film on the races", film_words(study)),

@@ -165,8 +165,13 @@ def cage_motion(solution: Solution) -> None:
 
 def worn_cage(solution: Solution) -> None:
     """Refuse what a cage that wears has no life of; of one whose wear is not stated none is asked."""
-    if solution.study.wear is not None:
+    from separatrix.verdict.life_table import wear_rates
+
+    study = solution.study
+    if study.wear is not None:
         cage_motion(solution)
+        candidate = candidates.reference_candidate(study, study.ranking) if study.ranking else None
+        wear_rates(study, study.wear, candidate)
 
 
 def candidate_cages(solution: Solution) -> None:
