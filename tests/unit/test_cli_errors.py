@@ -3,8 +3,6 @@
 A file that a user names is a regular one: a pipe or a device, which may never end, is not opened.
 """
 
-from __future__ import annotations
-
 import os
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """The verb `map`: axes, keys, files, errors, and how an interrupted map goes on."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import replace
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The verb `sensitivity`: keys, text, files, threads, interrupts."""
 
-from __future__ import annotations
-
 import contextlib
 import io
 import json

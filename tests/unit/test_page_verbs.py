@@ -1,7 +1,5 @@
 """What is special in the pages of verbs: cases of sentences, data of figures, the bearing to scale."""
 
-from __future__ import annotations
-
 import pytest
 
 from separatrix.chain.impact_restitution import restitution_factor
@@ -13,7 +11,7 @@ from separatrix.verbs import computed, verb_named
 from separatrix.verbs.answer_files import document
 from separatrix.verbs.map import map_figure, nearest_words, unchanged
 from separatrix.verbs.parts.bearing_drawing import CAGE, bearing_picture, section_of
-from separatrix.verbs.parts.curve_blocks import linear_law, pocket_friction
+from separatrix.verbs.parts.verdict_blocks import linear_law, pocket_friction
 from separatrix.verbs.sweep import SHOWN, case_table, envelope_figure, worst_words
 
 SHIPPED = "cryogenic-turbopump"

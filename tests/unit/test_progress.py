@@ -6,8 +6,6 @@ the process, which no neighbour on the machine changes: ``report`` [s], or for a
 ``pace`` [s] with done and total.
 """
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """The runner of long jobs: order, threads, interrupts, and what the ledger keeps of a killed one."""
 
-from __future__ import annotations
-
 import json
 import math
 import os

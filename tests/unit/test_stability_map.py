@@ -1,7 +1,5 @@
 """The stability map: its points, the rule that ends them early, and its bands."""
 
-from __future__ import annotations
-
 import contextlib
 import itertools
 from dataclasses import replace

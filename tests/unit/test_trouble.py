@@ -1,7 +1,5 @@
 """Cages at the edge of what can be: each command answers, or refuses in one line and writes nothing."""
 
-from __future__ import annotations
-
 import json
 import math
 from dataclasses import replace
