@@ -1,11 +1,14 @@
 """What must hold of friction files and fits, whatever the tests."""
 
+from dataclasses import replace
+
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from separatrix.friction.friction_file import FrictionFile, FrictionTest, Place, friction_text
 from separatrix.friction.friction_fit import fit_friction
+from separatrix.ground.errors import InputError
 from separatrix.ground.reader import read_text
 
 FRICTION = st.floats(0.01, 1.0)
@@ -35,9 +38,14 @@ def test_what_is_written_is_read(material, sample, flag, friction, v, p, end, ax
     """Any printable words and any numbers come back as they were."""
     test = FrictionTest(
         material=material, counterface="440C", medium="air", friction=friction, slip_speed=(v, 2.0 * v),
-        pressure=(1e6 * p, 1e6 * p), sample=sample, flags=(flag,), run_in_end=Place(axis, end),
+        pressure=(1e6 * p, 1e6 * p), sample=sample, flags=(flag, "f" * 500), run_in_end=Place(axis, end),
+        standard_error=friction / 7.0, standard_deviation=friction / 3.0, effective_count=10.0 + p, test=flag,
+        temperature=(77.0 + p, 300.0), source="a.csv", checksum="ab" * 32, reduced_by="separatrix 0.1.0",
     )  # fmt: skip
-    assert read_text(FrictionFile, friction_text([test]), "friction.toml").value.test == (test,)
+    both = test, replace(test, source="a.csv, step 2", sample=None)  # two steps of one log
+    assert read_text(FrictionFile, friction_text(both), "friction.toml").value.test == both
+    with pytest.raises(InputError, match=r"flags\[1\] must be one line of 1 to 500"):
+        replace(test, flags=("f" * 501,))
 
 
 @given(TESTS, st.floats(0.2, 5.0), POSITIVE)

@@ -11,7 +11,6 @@ from separatrix.front.page import editing as draft
 from separatrix.front.page.server import application
 from separatrix.ground.errors import InputError
 from separatrix.ground.schema import is_record, keys_of
-from separatrix.study.reading import read_study
 from separatrix.study.study import Study, shipped_studies
 from separatrix.study.template import template
 
@@ -88,19 +87,6 @@ def test_the_form_has_every_key_of_the_records():
     assert shown == (known | {".title", ".extends", ".library"}) - {"ranking.candidates"}
 
 
-def test_a_wrong_unit_is_refused_beside_its_field(page):
-    """The message is in the field's own form; the study file itself is not touched."""
-    found = edit(page, field="cage.mass", value="25 mm")
-    field = re.search(r'<form class="field wrong".*?</form>', found.text, re.DOTALL)[0]
-    assert 'value="cage.mass"' in field
-    assert "needs a unit of mass" in field
-    assert "1 value is refused" in found.text
-    assert read_study(root_of(page) / "small.toml")
-    mended = edit(page, field="cage.mass", value="26 g").text
-    assert "Every value is accepted" in mended
-    assert "mass = &#34;26 g&#34;" in mended  # the text beside it follows
-
-
 def test_a_fault_of_the_base_has_no_line_here(page):
     """Its message names the file; a fault of its own has its line."""
     (root_of(page) / "base.toml").write_text(COMMENTED.replace("25 g", "25 mm"))
@@ -109,13 +95,6 @@ def test_a_fault_of_the_base_has_no_line_here(page):
     faults = draft.check(root_of(page) / "variant.toml", root_of(page)).faults
     found = {one.key: (one.line, one.section) for one in faults if one.section == "cage"}
     assert (found["mass"], found["guidance"]) == ((0, "cage"), (3, "cage"))
-
-
-def test_the_form_follows_the_text(page):
-    """The other way round."""
-    text = SMALL.replace("[cage]", '[cage]\nmass = "31 g"')
-    found = edit(page, text=text).text
-    assert re.search(r'id="f-cage-mass" name="value" value="31 g"', found)
 
 
 def test_an_older_tab_changes_nothing(page):

@@ -114,17 +114,6 @@ def test_eta_does_not_move_with_the_list_of_kicks():
     assert solve(hard).restitution == solve(soft).restitution
 
 
-def test_the_cage_has_the_numbers_of_the_chain():
-    """Thin ring at the pitch radius, orbital speed of the balls, race damping of the film."""
-    state = solve(STUDY)
-    found = moving_cage(state, 0.0)
-    assert found.moment_of_inertia == pytest.approx(0.025 * 0.0325**2)
-    assert found.race_damping == state.restitution.race_damping
-    orbit = state.bearing.equilibrium.orbital_speed
-    assert found.cage_speed == pytest.approx(orbit.mean())
-    assert found.pitch_radius == STUDY.bearing.pitch_diameter / 2
-
-
 def test_the_chain_of_a_study_is_solved_once():
     """What does not depend on the cage is the same object for every cage, and for another study like it."""
     known = solve(STUDY).traction

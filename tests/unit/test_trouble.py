@@ -1,20 +1,13 @@
 """Cages at the edge of what can be: each command answers, or refuses in one line and writes nothing."""
 
 import json
-import math
-from dataclasses import replace
 from pathlib import Path
 
-import numpy as np
 import pytest
-from cages import ON_A_LAND
 from commands import refused
 
-from separatrix.cage import RunOutcome, run_ensemble
-from separatrix.chain.impact_restitution import damping_for
+from separatrix.cage import RunOutcome
 from separatrix.front import main
-from separatrix.study.study import StabilitySettings
-from separatrix.verdict.judgement import Verdict, judge
 
 BASE = """
 extends = "cryogenic-turbopump"
@@ -27,9 +20,6 @@ kicks = ["0.5 m/s"]
 runs = 4
 duration = "4 ms"
 """
-
-CAGE = replace(ON_A_LAND, race_damping=400.0, ball_cage_friction=0.1)
-SHORT = StabilitySettings(kicks=(0.5,), runs=4, duration=0.01)
 
 ANSWERED = {
     "land tighter than the pockets": '[cage]\nland_clearance = "20 um"',
@@ -76,25 +66,3 @@ def test_an_ensemble_that_cannot_be_is_refused_in_one_line(case, verb, capsys):
     lines = [line for line in BASE.splitlines() if not line.startswith(text.partition(" ")[0])]
     few = ["--points", "8"] * (verb == "map")  # 10 000 points, each refused, may take longer than is silent
     assert said in refused(capsys, verb, study(text, "\n".join([*lines, ""])), *few)
-
-
-@pytest.mark.parametrize(
-    "changes",
-    [
-        {"ball_count": 1},
-        {"ball_count": 100, "pocket_clearance": 1e-4},
-        {"race_damping": damping_for(0.0, 3e6, 0.025)},
-        {"race_damping": math.inf},
-        {"ball_cage_friction": 0.0},
-        {"land_friction": 0.0},
-        {"pocket_clearance": 0.0},
-        {"land_clearance": 1e-9},
-    ],
-)
-def test_an_odd_cage_has_a_verdict_and_a_reason(changes):
-    """One ball, a hundred, eta 0 and 1, no friction, no play: numbers, and a sentence that says why."""
-    cage = replace(CAGE, **changes)
-    found = judge(cage, run_ensemble(cage, SHORT))
-    assert found.verdict in Verdict
-    assert found.reason.endswith(".")
-    assert np.isfinite(found.growth_rate)
