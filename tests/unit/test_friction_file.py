@@ -13,13 +13,14 @@ from separatrix.study.reading import read_study
 from separatrix.study.sources import resolved
 from separatrix.study.study import Operation
 
-SMALL = """
+GOOD = """\
 [[test]]
 material = "Armalon"
 counterface = "440C"
 medium = "liquid nitrogen"
 friction = 0.08
-
+"""
+SMALL = f"""{GOOD}
 [[test]]
 material = "My compound"
 counterface = "440C"
@@ -150,14 +151,6 @@ def test_check_names_tests_that_sensitivity_refuses(tmp_path, capsys):
         assert line.startswith("Friction from tests of Armalon in liquid nitrogen, 440C must not scatter")
         assert {"verb": "sensitivity", "sentence": line} in refused
 
-
-GOOD = """\
-[[test]]
-material = "Armalon"
-counterface = "440C"
-medium = "liquid nitrogen"
-friction = 0.08
-"""
 
 WRONG_FILES = r"""
 ^title = "mine" :: friction.toml lacks: test. Write [[test]]
