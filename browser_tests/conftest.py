@@ -1,7 +1,5 @@
 """A browser on the page of a folder: a real server, a real Chromium, and what must hold of every view."""
 
-from __future__ import annotations
-
 import os
 import re
 import shutil

@@ -1,7 +1,5 @@
 """Jobs and answers: progress, cancel and resume, figures to hover over, files."""
 
-from __future__ import annotations
-
 import json
 
 import pytest

@@ -1,7 +1,5 @@
 """The moving cage: its page moving-cage.html, opened without a server, and the local page play it alike."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 

@@ -1,7 +1,5 @@
 """A study is opened, edited as form and as text, refused beside the field, and edited in two tabs."""
 
-from __future__ import annotations
-
 import json
 import re
 import time

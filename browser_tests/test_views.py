@@ -1,7 +1,5 @@
 """Every view: no accessibility fault that matters, nothing wider than the screen, nothing under the jobs."""
 
-from __future__ import annotations
-
 import pytest
 from axe_playwright_python.sync_playwright import Axe
 from playwright.sync_api import expect

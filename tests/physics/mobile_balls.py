@@ -1,7 +1,5 @@
 """Bearings of dynamics3d.md whose balls are pushed: `cryo`, `le7` and two wheels, and their held balls."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import replace

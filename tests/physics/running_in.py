@@ -1,7 +1,5 @@
 """Shapes of running-in, none of which the method assumes, and logs of them with known steady friction."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

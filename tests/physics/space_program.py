@@ -5,8 +5,6 @@ the frame of the housing instead of one that turns, scipy's integrator instead o
 and end without being located in time.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation

@@ -1,7 +1,5 @@
 """Logs whose friction is known: running-in, drift, one turn's modulation and correlated noise."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Running clearances: their limits, the rotating ring by another road, and what closes or is not known."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -5,14 +5,27 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from cages import with_distributions
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.special import ndtr
 
 from separatrix.cage import RunOutcome, moving_cage, run_ensemble
 from separatrix.cage.disturbance import settings_for
 from separatrix.chain.solution import solve
+from separatrix.friction.friction_fit import TestedFriction
+from separatrix.ground.errors import InputError
+from separatrix.study.candidates import environment_of
 from separatrix.study.distribution import normal, samples, uniform
 from separatrix.study.reading import read_study
-from separatrix.study.study import Candidate, Friction
-from separatrix.verdict.draws import Case, drawn_bearings, sample
+from separatrix.study.study import Candidate, Friction, RankingQuestion
+from separatrix.verdict.draws import (
+    Case,
+    drawn_bearings,
+    next_cage_deviation,
+    sample,
+    sobol_points,
+    uncertain_inputs,
+)
 from separatrix.verdict.judgement import Verdict, judge
 from separatrix.verdict.long_jobs import Runner
 from separatrix.verdict.ranking import rank
@@ -116,3 +129,147 @@ def test_rank_shows_both_verdicts_only_where_inputs_are_uncertain():
     both = row.judgement.verdict, row.over_inputs.verdict
     assert (*both, row.over_inputs.runs) == (Verdict.STABLE, Verdict.STABLE, 4)
     assert row.over_inputs.probability_low < row.over_inputs.probability_stable == 1.0
+
+
+# Quasi-random draws: what holds whatever the study, the number of samples and the seed.
+
+
+BASE = read_study("cryogenic-turbopump")
+LAWS = {
+    "film.thickness": normal(mean=5e-7, standard_deviation=1e-7),
+    "bearing.pitch_diameter": samples(values=(0.0648, 0.065)),
+    "operation.axial_load": uniform(low=2500.0, high=3500.0),
+}
+UNCERTAIN = with_distributions(BASE, LAWS)
+
+FEW = settings(max_examples=30)
+
+
+@FEW
+@given(st.integers(1, 300), st.integers(1, 300), st.integers(0, 2**40), st.integers(1, 8))
+def test_fewer_samples_are_the_first_of_more(few, more, seed, dimensions):
+    """A study can be carried on: what was drawn stays drawn, to the last bit."""
+    low, high = sorted((few, more))
+    first, points = (sobol_points(samples, dimensions, seed) for samples in (low, high))
+    assert np.array_equal(first, points[:low])
+
+
+@FEW
+@given(st.integers(0, 10), st.integers(0, 2**62))
+def test_every_dimension_is_stratified_inside_the_cube(power, seed):
+    """A power of two of points has exactly one in each of as many equal cells, along every axis.
+
+    Each is in the middle of its cell of 2**-30, so none is 0 or 1, where a quantile has its end.
+    """
+    points = sobol_points(2**power, 5, seed)
+    cells = np.sort(np.floor(points * 2**power).astype(int), axis=0)
+    assert (cells == np.arange(2**power)[:, None]).all()
+    assert (np.mod(points * 2.0**31, 2.0) == 1.0).all()
+    assert 0.0 < points.min() <= points.max() < 1.0
+
+
+@FEW
+@given(st.integers(0, 2**20))
+def test_the_same_seed_gives_the_same_draws_and_leaves_global_chance_alone(seed):
+    """Nothing but study, number and seed decides."""
+    np.random.seed(1)  # noqa: NPY002 - what must not matter
+    first = sample(UNCERTAIN, 16, seed)
+    state = np.random.get_state()[1].copy()  # noqa: NPY002
+    again = sample(UNCERTAIN, 16, seed)
+    assert np.array_equal(first.values, again.values)
+    assert np.array_equal(state, np.random.get_state()[1])  # noqa: NPY002
+    other = sample(UNCERTAIN, 16, seed + 1)
+    assert not np.array_equal(first.probabilities, other.probabilities)
+
+
+@FEW
+@given(st.integers(1, 200), st.integers(0, 2**20))
+def test_every_draw_lies_in_its_distribution(samples, seed):
+    """Columns stand in the order of the inputs, each within its ends; samples are drawn as they are."""
+    draws = sample(UNCERTAIN, samples, seed)
+    for i, one in enumerate(draws.inputs):
+        assert draws.values[:, i].min() >= one.distribution.low
+        assert draws.values[:, i].max() <= one.distribution.high
+    assert set(draws.values[:, draws.names.index("bearing.pitch_diameter")]) <= {0.0648, 0.065}
+
+
+def test_inputs_are_those_of_the_study_then_the_measured_frictions():
+    """First what the file says, in its order; then each friction of the bearing's environment."""
+    inputs = uncertain_inputs(UNCERTAIN)
+    assert tuple(one.key for one in inputs[:3]) == tuple(LAWS)
+    assert [one.source for one in inputs[:3]] == ["study"] * 3
+    frictions = inputs[3:]
+    measured = [one.friction[environment_of(BASE.ranking)] for one in BASE.ranking.candidates]
+    assert len(frictions) == len(measured)
+    for one, friction in zip(frictions, measured, strict=True):
+        assert one.key.startswith("ranking.")
+        assert one.source == "assumed"
+        assert one.distribution.standard_deviation == pytest.approx(0.09 * friction.mean, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("friction", "deviation", "source"),
+    [
+        (Friction(mean=0.1), 0.009, "assumed"),
+        (Friction(mean=0.1, standard_deviation=0.02), 0.02, "measured"),
+        (Friction(mean=0.1, standard_deviation=0.02, count=4), 0.02 * 1.25**0.5, "measured"),
+        (Friction(mean=0.1, standard_deviation=0.03, standard_error=0.04), 0.05, "measured"),
+        (Friction(mean=0.1, standard_deviation=0.03, assumed_scatter=True), 0.03, "assumed"),
+    ],
+)
+def test_the_next_cage_scatters_more_than_the_mean(friction, deviation, source):
+    """The scatter of one sample and the error of the mean add in quadrature; nothing known is 9 %."""
+    found = next_cage_deviation(friction, 0.09)
+    assert found == (pytest.approx(deviation, rel=1e-12), source)
+
+
+def of_friction(**known):
+    """A study with one candidate of this friction in air."""
+    tested = Candidate(name="Tested", friction={"air": Friction(**known)})
+    return replace(BASE, ranking=RankingQuestion(environments=("air",), candidates=(tested,)))
+
+
+def test_a_friction_whose_scatter_reaches_zero_is_log_normal():
+    """No draw of a friction is negative, and the mean stays the measured one."""
+    draws = sample(of_friction(mean=0.05, standard_deviation=0.02), 1024)
+    assert draws.inputs[0].distribution.kind == "log-normal"
+    assert draws.values.min() > 0.0
+    assert draws.values.mean() == pytest.approx(0.05, rel=2e-3)  # 1024 points, 40 % wide, error near 1/n
+
+
+def of_tests(**known):
+    """The same, where a fit to tests foretells the friction."""
+    law = TestedFriction(material="Tested", environment="air", tests=(), default_scatter=0.09)
+    return of_friction(law=law, **known)
+
+
+def test_a_friction_that_tests_foretell_is_drawn_about_its_median():
+    """A fit says median and scatter of the logarithm: 0.3 and 0.4 in quadrature make 0.5."""
+    known = {"mean": 0.08, "standard_error": 0.3 * 0.08, "standard_deviation": 0.4 * 0.08}
+    (one,) = uncertain_inputs(of_tests(**known))
+    levels = ndtr(np.array([-2.0, -1.0, 0.0, 1.0, 2.0]))
+    found = np.log(one.distribution.quantile(levels) / 0.08)
+    assert found == pytest.approx([-1.0, -0.5, 0.0, 0.5, 1.0], abs=1e-5)  # the cut at 5 standard deviations
+    assert one.central == 0.08
+
+
+REFUSED = [
+    (lambda: sample(UNCERTAIN, 0), "samples must be a whole number from 1"),
+    (lambda: sample(UNCERTAIN, 2**20 + 1), "must be a whole number from 1"),
+    (lambda: sample(replace(BASE, name="certain", ranking=None), 16), "certain has no uncertain number"),
+    (lambda: uncertain_inputs(of_friction(mean=0.0, standard_deviation=0.1)), "mean must be > 0"),
+    (lambda: uncertain_inputs(of_tests(mean=0.08, standard_error=0.0, standard_deviation=0.9)),
+     "tests of Tested in air must not scatter by ten times"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("draw", "words"), REFUSED)
+def test_what_cannot_be_drawn_is_refused(draw, words):
+    """Too few, too many, or nothing uncertain; a zero that scatters; a friction known to ten powers of e."""
+    with pytest.raises(InputError, match=words):
+        draw()
+
+
+def test_a_friction_of_zero_without_scatter_is_certain():
+    """It is no input."""
+    assert uncertain_inputs(of_friction(mean=0.0)) == ()

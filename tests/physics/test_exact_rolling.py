@@ -185,34 +185,6 @@ def test_any_number_of_threads_is_the_same():
         assert np.array_equal(traction, alone[k % 4])
 
 
-def test_random_contacts_converge():
-    """Shape, creeps, film, friction, Poisson's ratio and grid at random, cold: 4.1 passes on average."""
-    rng = np.random.default_rng(2026)
-    passes = [random_case(rng).iterations for _ in range(150)]
-    assert max(passes) <= 40
-    assert np.mean(passes) < 5.0
-
-
-def random_case(rng):
-    """One contact from a cold start."""
-    b, nu, mu = 10.0 ** rng.uniform(-1.1, 0.5), rng.uniform(0.0, 0.5), 10.0 ** rng.uniform(-2.0, 0.0)
-    columns, rows = (int(n) for n in rng.integers(6, 22, 2))
-    kind, race, L, rough = rng.integers(0, 4), None, 0.0, 0.0
-    if kind == 1:
-        film = 10.0 ** rng.uniform(-1.9, 0.8), rng.uniform(0.0, 0.48), b * 10.0 ** rng.uniform(-3.0, 0.0)
-        race = body(nu, film)
-    elif kind == 2:
-        L = b * (1.0 - nu) * 10.0 ** rng.uniform(-2.0, 1.0)
-    elif kind == 3:
-        rough = P0 * b * (1.0 - nu) * 10.0 ** rng.uniform(-3.0, 2.0)
-    made = contact(
-        b, nu, columns=columns, rows=rows, friction=mu, race=race, film_compliance=L, roughness=rough
-    )
-    sizes = rng.normal(size=4) * 10.0 ** rng.uniform(-2.0, 1.3, size=4) * saturation(nu, mu)
-    names = ("longitudinal", "lateral", "spin", "curvature")
-    return solve(made, rigid_slip(made.grid, **dict(zip(names, sizes, strict=True))))
-
-
 def test_a_curve_is_its_points():
     """Points of a batch, each from the secant of the last two, agree with cold ones to the tolerance."""
     made, xs = contact(0.3, columns=16, rows=16), saturation(0.25)

@@ -16,7 +16,7 @@ from separatrix.cage.closed_forms import drift_rate_law
 from separatrix.study.study import Guidance, StabilitySettings
 from separatrix.verdict.crossing import GrowthCounter, cage_at
 from separatrix.verdict.judgement import wilson_interval
-from separatrix.verdict.long_jobs import Interrupted, Runner
+from separatrix.verdict.long_jobs import Runner
 from separatrix.verdict.stability_curve import (
     critical_friction,
     curve_of_points,
@@ -110,24 +110,6 @@ def test_a_whirl_of_the_land_leaves_no_crossing():
     found = critical_friction(driven, 0.9, replace(SETTINGS, runs=8, kicks=(0.5,)))
     assert found.critical_friction is None
     assert "whirl even at zero pocket friction" in found.reason
-
-
-def test_an_interrupted_curve_keeps_its_points_and_says_so():
-    """Ctrl-C after some points: those are there, with limits for them alone, and complete is False."""
-    factors = (0.1, 0.3, 0.6, 0.9)
-
-    def interrupt(done, total):
-        if done > 0.4 * total:
-            raise KeyboardInterrupt
-
-    quick = replace(SETTINGS, runs=8, duration=5e-3, restitution_factors=factors)
-    with pytest.raises(Interrupted) as stop:
-        stability_curve(CAGE, quick, runner=Runner(progress=interrupt))
-    found = stop.value.finished
-    assert {one.restitution_factor for one in found.curve} < set(factors)
-    limits = [one.restitution_factor for one in found.linear_limit]
-    assert limits == [one.restitution_factor for one in found.curve]
-    assert found.complete is False
 
 
 def test_the_curve_of_a_landless_cage_says_that_it_drifts():

@@ -1,7 +1,5 @@
 """Statistics of the reduction: intervals that hold the truth, and second roads to its numbers."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

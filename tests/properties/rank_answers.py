@@ -1,7 +1,5 @@
 """What an answer of `rank` contradicts in itself: for a test, and for benchmarks/rank_sane_studies.py."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Any
 

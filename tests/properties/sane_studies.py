@@ -1,7 +1,5 @@
 """Random studies that an engineer could have written, each made by its seed: bearings of three classes."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The command line as the tests call it: its document, its refusal in one line, what a job has kept."""
 
-from __future__ import annotations
-
 import json
 import pickle
 import re

@@ -1,7 +1,5 @@
 """Workbooks with what openpyxl does not write: saved values of formulas, parts that a test makes wrong."""
 
-from __future__ import annotations
-
 import io
 import re
 import zipfile

@@ -4,8 +4,6 @@ Each writer takes arrays in SI units (friction without a unit) and gives the byt
 written with `digits` decimals in the unit of the format, so that a reader can be compared to the last digit.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

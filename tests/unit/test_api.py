@@ -64,13 +64,6 @@ def test_a_report_of_a_study_is_a_document(small):
     assert found.pdf().startswith(b"%PDF-")
 
 
-def test_the_default_folder_is_named_after_the_study(elsewhere, capsys):
-    """Without `--out` the files are in a folder beside, with the study's name."""
-    assert main(["bearing", "le7"]) == 0
-    assert (Path("le7") / "bearing.html").exists()
-    assert "Text, figures and data are in le7/" in capsys.readouterr().out
-
-
 def test_a_check_fits_a_screen_and_full_shows_the_rest(elsewhere, capsys):
     """Seven materials without a datum at 90 K are one note; what matters and what is assumed comes first."""
     shipped = resources.files("separatrix") / "examples" / "cryogenic-turbopump.toml"

@@ -152,30 +152,19 @@ def test_a_log_is_dropped_corrected_and_cut(page, root):
     assert 'data-ways="[[' in page.get(re.search('hx-get="(/figure/[^"]+)"', text)[1]).text
 
 
-def test_a_job_is_cancelled_and_resumed(page, root):
-    """What was finished is in the answer and in the ledger; the second call takes it from there."""
-    page.post("/run/long.toml", data={"verb": "rank"})
-    until(page, lambda jobs: "<progress max" in jobs[0])
-    number = jobs(page)[0].partition("/jobs/")[2].partition("/")[0]
-    page.post(f"/jobs/{number}/cancel")
-    until(page, lambda jobs: not jobs[0].startswith("running"))
-    assert jobs(page)[0].startswith("cancelled")
-    assert (root / "long" / "finished-runs.sqlite").exists()
-    assert "Resume" in jobs(page)[0]
-    page.post(f"/jobs/{number}/resume")
-    assert jobs(page)[0].startswith(("running", "waiting"))
-    page.post(f"/jobs/{int(number) + 1}/cancel")
-    until(page, lambda jobs: jobs[0].startswith("cancelled"))
-
-
 def test_a_killed_computing_process_loses_only_the_job_in_hand(page):
-    """The page says so, and computes the next question in a new process."""
+    """The page says so, resumes it, and computes the next question in a new process."""
     queue = page.app.state.page.jobs
     page.post("/run/long.toml", data={"verb": "rank"})
     until(page, lambda jobs: jobs[0].startswith("running"))
     os.kill(queue._process.pid, signal.SIGKILL)
     until(page, lambda jobs: jobs[0].startswith("failed"), but=())
     assert "resume to go on" in jobs(page)[0]
+    number = int(jobs(page)[0].partition("/jobs/")[2].partition("/")[0])
+    page.post(f"/jobs/{number}/resume")
+    assert jobs(page)[0].startswith(("running", "waiting"))
+    page.post(f"/jobs/{number + 1}/cancel")
+    until(page, lambda jobs: jobs[0].startswith("cancelled"))
     page.post("/run/small.toml", data={"verb": "bearing"})
     until(page, lambda jobs: jobs[0].startswith("finished"), but=())
 

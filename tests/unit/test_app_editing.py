@@ -1,6 +1,8 @@
 """A study in the page: text and form are one, drafts outlive the server, faults are beside their keys."""
 
+import json
 import re
+import shutil
 import tomllib
 
 import pytest
@@ -8,12 +10,14 @@ from commands import SMALL, root_of
 from fastapi.testclient import TestClient
 
 from separatrix.front.page import editing as draft
+from separatrix.front.page.folder import Folder
 from separatrix.front.page.server import application
+from separatrix.front.page.worker import Job, answered
 from separatrix.ground.errors import InputError
 from separatrix.ground.schema import is_record, keys_of
-from separatrix.study.reading import read_study
 from separatrix.study.study import Study, shipped_studies
 from separatrix.study.template import template
+from separatrix.verdict.ledger import NAME
 
 COMMENTED = """# a study
 title = "One"   # its name
@@ -88,19 +92,6 @@ def test_the_form_has_every_key_of_the_records():
     assert shown == (known | {".title", ".extends", ".library"}) - {"ranking.candidates"}
 
 
-def test_a_wrong_unit_is_refused_beside_its_field(page):
-    """The message is in the field's own form; the study file itself is not touched."""
-    found = edit(page, field="cage.mass", value="25 mm")
-    field = re.search(r'<form class="field wrong".*?</form>', found.text, re.DOTALL)[0]
-    assert 'value="cage.mass"' in field
-    assert "needs a unit of mass" in field
-    assert "1 value is refused" in found.text
-    assert read_study(root_of(page) / "small.toml")
-    mended = edit(page, field="cage.mass", value="26 g").text
-    assert "Every value is accepted" in mended
-    assert "mass = &#34;26 g&#34;" in mended  # the text beside it follows
-
-
 def test_a_fault_of_the_base_has_no_line_here(page):
     """Its message names the file; a fault of its own has its line."""
     (root_of(page) / "base.toml").write_text(COMMENTED.replace("25 g", "25 mm"))
@@ -109,13 +100,6 @@ def test_a_fault_of_the_base_has_no_line_here(page):
     faults = draft.check(root_of(page) / "variant.toml", root_of(page)).faults
     found = {one.key: (one.line, one.section) for one in faults if one.section == "cage"}
     assert (found["mass"], found["guidance"]) == ((0, "cage"), (3, "cage"))
-
-
-def test_the_form_follows_the_text(page):
-    """The other way round."""
-    text = SMALL.replace("[cage]", '[cage]\nmass = "31 g"')
-    found = edit(page, text=text).text
-    assert re.search(r'id="f-cage-mass" name="value" value="31 g"', found)
 
 
 def test_an_older_tab_changes_nothing(page):
@@ -238,3 +222,103 @@ def test_a_wrong_address_is_answered_with_a_page(page, method, place, status, wo
     found = page.request(method, place)
     assert (found.status_code, words in found.text) == (status, True)
     assert "Back to the studies" in found.text
+
+
+# A link out of the page's folder is answered like a missing file; nothing is written through it.
+
+
+NEIGHBOUR = "the study of a neighbour"
+ANSWER = {
+    "title": NEIGHBOUR,
+    "warnings": [],
+    "overall": [{"rank": 1, "name": NEIGHBOUR, "verdict": "STABLE"}],
+}
+
+
+@pytest.fixture
+def outside(tmp_path):
+    """A folder beside that of the page, with files as the page has them."""
+    place = tmp_path / "outside"
+    (place / "small").mkdir(parents=True)
+    (place / "small" / "rank.json").write_text(json.dumps(ANSWER))
+    for name in ("rank.txt", "report.html", "log.csv", "draft.toml"):
+        (place / "small" / name).write_text(f"# {NEIGHBOUR}\n")
+    return place / "small"
+
+
+def before(folder):
+    """Return the content of each file of a folder."""
+    return {path.name: path.read_bytes() for path in folder.iterdir() if path.is_file()}
+
+
+def linked(page, outside, how):
+    """Make the answers a link, or each file in them."""
+    place = root_of(page) / "small"
+    if how == "folder":
+        place.symlink_to(outside)
+        return
+    place.mkdir()
+    for path in outside.iterdir():
+        (place / path.name).symlink_to(path)
+
+
+@pytest.mark.parametrize("how", ["folder", "files"])
+@pytest.mark.parametrize(
+    "place",
+    [
+        "/",
+        "/study/small.toml",
+        "/answer/rank/small.toml",
+        "/files/small.toml",
+        "/file/small/rank.json",
+        "/zip/small.toml",
+        "/figure/rank/stability-curve/small.toml",
+    ],
+)
+def test_answers_outside_are_not_shown(page, outside, how, place):
+    """Neither in the list, nor in a page of their own; and the list does not fail over them."""
+    missing = page.get(place)
+    linked(page, outside, how)
+    found = page.get(place)
+    assert (found.status_code, found.content) == (missing.status_code, missing.content)
+
+
+def test_a_study_beside_a_way_back_in_is_not_reached(page, outside):
+    """A link outside that leads to a study inside has its draft and answers outside."""
+    (outside / "back.toml").symlink_to(root_of(page) / "small.toml")
+    (root_of(page) / "linked").symlink_to(outside)
+    assert page.get("/study/linked/back.toml").status_code == 422
+
+
+def test_a_draft_outside_is_neither_shown_nor_written(page, outside):
+    """An edit takes the place of the link."""
+    draft, kept = root_of(page) / ".small.toml.draft", before(outside)
+    draft.symlink_to(outside / "draft.toml")
+    found = page.get("/study/small.toml").text
+    assert NEIGHBOUR not in found
+    assert "unsaved edits" not in page.get("/").text
+    version = found.partition('name="version" value="')[2][:16]
+    page.post("/edit/small.toml", data={"version": version, "text": SMALL + "# mine\n"})
+    assert before(outside) == kept
+    assert "# mine" in draft.read_text()
+
+
+@pytest.mark.parametrize("inside", ["", NAME])
+def test_nothing_is_written_through_a_link(page, outside, inside):
+    """Whether the folder of the answers or a file in it leads out: the job is refused first."""
+    root, kept = root_of(page), before(outside)
+    place = root / "small"
+    if inside:
+        place.mkdir()
+    (place / inside).symlink_to(outside / "new" if inside else outside)
+    job = Job(number=1, verb="bearing", name="small.toml")
+    with pytest.raises(InputError, match="leads out of the folder of the studies"):
+        answered(job, Folder(root=root), lambda **_: None)
+    assert before(outside) == kept
+
+
+def test_a_link_to_answers_inside_is_followed(page, outside):
+    """Only what leads out is missing."""
+    shutil.copytree(outside, root_of(page) / "other")
+    (root_of(page) / "small").symlink_to(root_of(page) / "other")
+    assert '/answer/rank/small.toml"' in page.get("/").text

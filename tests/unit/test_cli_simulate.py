@@ -1,7 +1,5 @@
 """One run by the verb: its document, text and arrays, in the plane and in space."""
 
-from __future__ import annotations
-
 import json
 import re
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The real command, as a process: help, version, pipes, full disks, encodings, interrupts."""
 
-from __future__ import annotations
-
 import gc
 import json
 import math

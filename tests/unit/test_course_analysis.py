@@ -1,7 +1,5 @@
 """What the analysis of a run says of motions whose answer is known."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import fields, replace
 

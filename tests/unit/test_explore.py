@@ -11,7 +11,7 @@ from separatrix.cage import Ensemble, RunOutcome
 from separatrix.verdict import uncertain_study
 from separatrix.verdict.draws import Case
 from separatrix.verdict.drivers import CHANCE, drivers, fitted
-from separatrix.verdict.judgement import CLEAR, FEW, KickCount, Verdict, wilson_interval
+from separatrix.verdict.judgement import KickCount, Verdict
 from separatrix.verdict.uncertain_study import is_plain, settles_more
 
 CASE = Case("A")
@@ -139,31 +139,6 @@ def test_a_kick_that_is_left_out_leaves_every_column_of_runs_in_space(monkeypatc
     bearings = SimpleNamespace(runs=range(total), kicks=(0.1, 0.2), ensemble=ensemble, central={"A": None})
     _, found = uncertain_study.counted_among(bearings, CASE, None, SimpleNamespace(free_ball=None))
     assert found.largest_tilt.shape == found.outcome.shape == (1, total)
-
-
-def test_early_ends_decide_as_all_bearings_would():
-    """1000 cases of random true shares: a stopped one has the verdict of its 512 runs, all but a few."""
-    random = np.random.default_rng(7)
-    other = 0
-    for p in random.random(1000):
-        runs = random.random(512) < p
-        ends = [
-            _verdict(int(runs[:n].sum()), n) for n in range(uncertain_study.BLOCK, 513, uncertain_study.BLOCK)
-        ]
-        stopped = next((end for end, plain in ends if plain), ends[-1][0])
-        other += stopped is not ends[-1][0]
-    assert other <= 5  # 7 looks at 1e-3 each, of the tenth of the cases that lie near a limit: 1 expected
-
-
-def _verdict(settled, runs):
-    """Verdict of a count from one kick, and whether it is plain."""
-    low = wilson_interval(settled, runs)[0]
-    verdict = Verdict.UNDECIDED
-    if wilson_interval(runs - settled, runs)[0] > FEW:
-        verdict = Verdict.UNSTABLE
-    elif low > FEW and settled / runs >= CLEAR:
-        verdict = Verdict.STABLE
-    return verdict, is_plain(judged(verdict, settled, runs=runs))
 
 
 def test_outcomes_are_counted_where_they_settle_or_roll():

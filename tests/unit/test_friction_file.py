@@ -7,21 +7,20 @@ from commands import changed, document, read_friction, refusal, refusal_line, ro
 
 from separatrix.chain.pocket_friction import PocketConditions, friction_in_pocket
 from separatrix.chain.solution import solve
-from separatrix.friction.friction_file import FrictionTest, Place, friction_text
 from separatrix.friction.friction_fit import TestedFriction
 from separatrix.front import main
-from separatrix.ground.errors import InputError
 from separatrix.study.reading import read_study
 from separatrix.study.sources import resolved
 from separatrix.study.study import Operation
 
-SMALL = """
+GOOD = """\
 [[test]]
 material = "Armalon"
 counterface = "440C"
 medium = "liquid nitrogen"
 friction = 0.08
-
+"""
+SMALL = f"""{GOOD}
 [[test]]
 material = "My compound"
 counterface = "440C"
@@ -38,48 +37,12 @@ POCKET = PocketConditions(
 TURNING = Operation(inner_speed=100.0, axial_load=10.0, temperature=77.0, fluid="liquid nitrogen")
 
 
-def whole(**changes):
-    """A test with every field."""
-    return FrictionTest(**{
-        "material": 'PEEK "x" \\ 30 %', "counterface": "440C", "medium": "liquid nitrogen",
-        "friction": 0.1 + 0.2 / 3.0, "standard_error": 1e-3 / 3.0, "standard_deviation": 0.01,
-        "effective_count": 88.25, "temperature": (77.35, 78.0), "slip_speed": (1.0 / 3.0, 5.0),
-        "pressure": (1e6 / 3.0, 1e6 / 3.0), "sample": "s1", "test": "t1", "run_in_end": Place("cycles", 12.3),
-        "flags": ("drift: 2 % in 1 km", "too short"), "source": "a.csv",
-        "checksum": "ab" * 32, "reduced_by": "separatrix 0.1.0",
-    } | changes)  # fmt: skip
-
-
 def study(folder, text=SMALL, ranking=""):
     """A study beside a friction file."""
     written(folder, text, "friction.toml")
     return written(
         folder, f'extends = "cryogenic-turbopump"\n[ranking]\nfriction = "friction.toml"\n{ranking}\n'
     )
-
-
-def read_back(folder, tests):
-    """The tests of a friction file that is written and read."""
-    return read_friction(written(folder, friction_text(tests), "friction.toml"))
-
-
-def test_a_flag_is_one_line_of_at_most_500(tmp_path):
-    """The reduction's own are tested to be shorter, where they are made."""
-    tests = (whole(flags=("a" * 500,), source="a.csv, step 1"), whole(source="a.csv, step 2", sample=None))
-    assert read_back(tmp_path, tests) == tests  # two steps of one log
-    with pytest.raises(InputError, match=r"flags\[1\] must be one line of 1 to 500"):
-        whole(flags=("a" * 501,))
-
-
-def test_only_four_keys_are_needed(tmp_path):
-    """What slid on what, in what, and the friction; nothing else is made up."""
-    first, second = read_friction(written(tmp_path, SMALL, "friction.toml"))
-    assert first == FrictionTest(
-        material="Armalon", counterface="440C", medium="liquid nitrogen", friction=0.08
-    )
-    assert second.slip_speed == (1.0, 5.0)
-    assert second.temperature == (77.0, 77.0)
-    assert first.pressure_velocity is None
 
 
 def test_a_study_ranks_the_materials_of_a_friction_file(tmp_path):
@@ -188,14 +151,6 @@ def test_check_names_tests_that_sensitivity_refuses(tmp_path, capsys):
         assert line.startswith("Friction from tests of Armalon in liquid nitrogen, 440C must not scatter")
         assert {"verb": "sensitivity", "sentence": line} in refused
 
-
-GOOD = """\
-[[test]]
-material = "Armalon"
-counterface = "440C"
-medium = "liquid nitrogen"
-friction = 0.08
-"""
 
 WRONG_FILES = r"""
 ^title = "mine" :: friction.toml lacks: test. Write [[test]]

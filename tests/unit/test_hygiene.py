@@ -1,7 +1,5 @@
 """What no source file of the package may hold, beyond what the linter refuses."""
 
-from __future__ import annotations
-
 import ast
 import re
 import subprocess

@@ -1,7 +1,5 @@
 """The page of `simulate`: what its pictures and the moving cage show, and when."""
 
-from __future__ import annotations
-
 import html
 import json
 

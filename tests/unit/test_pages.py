@@ -1,7 +1,5 @@
 """The contract of every verb: Python = JSON = command line, its keys, files, and a page of its numbers."""
 
-from __future__ import annotations
-
 import contextlib
 import json
 import re

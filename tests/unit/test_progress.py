@@ -6,8 +6,6 @@ the process, which no neighbour on the machine changes: ``report`` [s], or for a
 ``pace`` [s] with done and total.
 """
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 
@@ -43,29 +41,6 @@ def test_the_share_is_done_by_total_while_the_total_stays(parts):
         done += part
         pace(done, total)
         assert pace.share == pytest.approx(done / total, abs=1e-9)
-
-
-@given(
-    st.lists(st.tuples(st.integers(1, 100), st.lists(SOME_WORK, max_size=3), st.integers(0, 2)), min_size=1)
-)
-def test_announced_and_finished_places_never_take_the_share_back(places):
-    """Places of any sizes, with any times, of which some announce another: 1 only at the end."""
-    work, pace, before, wanted = Work(), Pace(), 0.0, {0: places[0]}
-    work.loads[0] = Load(places[0][0])
-    while wanted:
-        name, (runs, times, follow) = wanted.popitem()
-        for spent in times:
-            work.spend(name, spent, runs / len(times))
-        work.end(name, 1.0)
-        for one in range(follow):
-            if (new := len(work.loads)) < len(places):
-                work.loads[new] = Load(places[new][0], dear=1.0 + one)
-                wanted[new] = places[new]
-        work.finish(name)
-        pace(*work.so_far(2))
-        assert before <= pace.share <= 1.0
-        before = pace.share
-    assert pace.share in (0.0, 1.0)  # nothing, if no time was spent
 
 
 @pytest.mark.parametrize("path", RECORDED, ids=lambda path: path.stem)

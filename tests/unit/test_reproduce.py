@@ -178,17 +178,6 @@ def test_an_option_that_is_gone_and_was_not_asked_for_is_left_out(stored, put, c
     assert again(capsys, put(changed(stored[asked], older)))["agreement"] == "bit for bit"
 
 
-def test_a_report_has_its_answers_in_it(stored, put, capsys):
-    """Each of them is computed again."""
-    answers = {asked[0]: stored[asked] for asked in (("check", "ball-218"), ("bearing", "ball-218"))}
-    text = json.dumps(answers).replace("</", r"<\/")
-    page = f'<html><script type="application/json" id="separatrix-answers">{text}</script></html>'
-    put({})
-    Path("report.html").write_text(page, encoding="utf-8")
-    found = document(capsys, "reproduce", "report.html", "--quiet")
-    assert (found["same"], [one["verb"] for one in found["answers"]]) == (True, ["check", "bearing"])
-
-
 def _study(section: str, **keys):
     return lambda kept: kept["study"]["data"].setdefault(section, {}).update(keys)
 

@@ -1,7 +1,5 @@
 """Records as plain data, as labelled arrays, and as tables."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import dataclass, fields, replace
 from enum import Enum, IntEnum

@@ -1,19 +1,19 @@
 """The runner of long jobs: order, threads, interrupts, and what the ledger keeps of a killed one."""
 
-from __future__ import annotations
-
 import json
 import math
 import os
 import signal
 import sqlite3
 import subprocess
+import sys
 import threading
 import time
 import zlib
 from dataclasses import fields, replace
 from pathlib import Path
 
+import distributed
 import numpy as np
 import pytest
 from commands import COMMAND, pieces
@@ -25,8 +25,11 @@ from separatrix.front import main
 from separatrix.ground.errors import InputError
 from separatrix.study.reading import read_study
 from separatrix.study.study import MotionModel, PocketShape
+from separatrix.verdict import cluster as clusters
+from separatrix.verdict.cluster import cluster
 from separatrix.verdict.ledger import NAME, Ledger, key_of
 from separatrix.verdict.long_jobs import PART, Interrupted, Load, Runner, Work, joined, scattered
+from separatrix.verdict.stability_curve import stability_curve
 
 WHEEL = read_study("momentum-wheel")
 CAGE = moving_cage(solve(WHEEL), 0.2)
@@ -312,3 +315,71 @@ def test_a_killed_job_goes_on_to_the_same_bytes(elsewhere, tmp_path, capsys):
     assert "runs were taken from" in said
     assert main(call) == 0
     assert json.loads(resumed) == json.loads(capsys.readouterr().out)
+
+
+# Runs on a Dask cluster: the same numbers as here; and what is refused.
+
+
+FEW = replace(WHEEL.stability, runs=4, duration=0.005, restitution_factors=(0.2, 0.8))
+
+
+@pytest.fixture(scope="module")
+def two():
+    """Two worker processes."""
+    with distributed.LocalCluster(
+        n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None, silence_logs=50
+    ) as found:
+        yield found
+
+
+def test_a_cluster_gives_the_same_curve(two):
+    """To the last bit."""
+    with cluster(two.scheduler_address) as (executor, threads):
+        assert threads == 4  # two for each worker
+        runner = Runner(jobs=threads, executor=executor)
+        far = stability_curve(CAGE, FEW, runner=runner)
+    assert far == stability_curve(CAGE, FEW)
+
+
+def refused(address):
+    """Return the line with which an address is refused: with the option, and the address."""
+    with pytest.raises(InputError) as refusal, cluster(address):
+        pass
+    text = str(refusal.value)
+    assert text.startswith("--cluster ")
+    assert "\n" not in text
+    return text
+
+
+def test_workers_of_another_version_are_refused(two, monkeypatch):
+    """Their runs would be another engine's; the worker is named."""
+    monkeypatch.setattr(clusters, "program", lambda: str(os.getpid()).encode())
+    text = refused(two.scheduler_address)
+    assert "has workers with another version" in text
+    assert "tcp://" in text
+
+
+WRONG = {
+    "local:0": "must be local:N with N from 1 to 1024",
+    "local:many": "must be local:N",
+    "local:2000": "must be local:N",
+    "nowhere": "is not the address of a running Dask scheduler",
+    "tcp://127.0.0.1:1": "is not the address of a running Dask scheduler",
+}
+
+
+@pytest.mark.parametrize(("address", "words"), WRONG.items(), ids=WRONG.keys())
+def test_a_wrong_address_is_refused_in_one_line(address, words, monkeypatch):
+    """With the option, the rule and what was given."""
+    monkeypatch.setattr(clusters, "PATIENCE", 0.5)
+    text = refused(address)
+    assert words in text
+    assert f'"{address}"' in text
+
+
+def test_without_the_extra_the_refusal_names_it(monkeypatch):
+    """dask[distributed] is not among the requirements."""
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    text = refused("local:1")
+    assert "needs the extra cluster" in text
+    assert "separatrix[cluster]" in text

@@ -1,7 +1,5 @@
 """The verb `sweep` and its function: cases, tables, refusals, threads, and what it must agree with."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 

@@ -214,15 +214,6 @@ def test_logs_of_one_name_in_two_folders_are_two_tests_each_with_its_own_conditi
     assert [test.run_in_end for test in found] == [90.0, 90.0]
 
 
-def test_the_speed_of_a_turning_disk_is_that_of_the_steady_part(tmp_path):
-    """60 rpm, then 120 rpm behind the end of running-in, on a radius of the map: 0.251 m/s."""
-    rows = "".join(f"{i},{0.1 + 0.001 * (i % 3)},{60 if i < 150 else 120}\n" for i in range(300))
-    (tmp_path / "a.csv").write_text(f"time [s],COF,Speed [rpm]\n{rows}")
-    radius = column_map({"test": {"track_radius": "20 mm"}})
-    (test,) = separatrix.tribometer(tmp_path / "a.csv", run_in="150 s", column_map=radius).tests
-    assert test.conditions.slip_speed == pytest.approx(4 * np.pi * 0.02, rel=1e-12)  # rounding
-
-
 def test_its_tables_and_pages_are_those_of_a_test(folder):
     """One row for each test, in the order of the numbers in their names; its picture by its source."""
     found = separatrix.tribometer(folder)

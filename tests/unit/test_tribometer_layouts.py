@@ -1,7 +1,5 @@
 """Logs as instruments write them, read at once where all is clear; others through their draft."""
 
-from __future__ import annotations
-
 import json
 import re
 from datetime import datetime, timedelta

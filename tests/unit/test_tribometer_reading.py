@@ -1,7 +1,5 @@
 """Raw tribometer logs in text come back to the last digit written, with their units and conditions."""
 
-from __future__ import annotations
-
 import hashlib
 import math
 

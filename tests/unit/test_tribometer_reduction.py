@@ -1,7 +1,5 @@
 """Reduction of a log: what is cut, averaged, told, kept and refused."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -2,11 +2,17 @@
 
 import math
 import pickle
+from pathlib import Path
 
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from separatrix.ground.errors import InputError
 from separatrix.ground.units import UNITS, format_number, format_quantity, parse
+from separatrix.study.reading import read_study
+from separatrix.study.sources import resolved
+from separatrix.study.study import shipped_studies
 
 PINT_NAMES = {
     "lbf in": "lbf * inch",
@@ -140,3 +146,57 @@ def test_values_are_shown_in_the_unit_an_engineer_would_choose(row):
     assert format_quantity(float(value), unit) == text
     assert format_quantity(None, unit) == "none"
     assert format_number(-0.0) == "0"
+
+
+# Whatever the text, the answer is a finite number or one line of refusal; units change nothing.
+
+
+EXAMPLE = shipped_studies()["cryogenic-turbopump"].read_text(encoding="utf-8")
+
+
+def refused_in_one_line(call):
+    """Result of a call, or None if it was refused properly."""
+    refusal = ""
+    try:
+        return call()
+    except InputError as error:
+        refusal = str(error)
+    assert all(line.isprintable() for line in refusal.split("\n"))
+    assert len(refusal) < 400
+    return None
+
+
+nearly = st.from_regex(r"[-+]?[0-9.,_eE*/ ]{1,12} ?[A-Za-z0-9/* ]{0,6}", fullmatch=True)
+
+
+@settings(max_examples=120)
+@given(st.text(max_size=70) | nearly, st.sampled_from(sorted(UNITS)))
+def test_any_text_is_a_finite_number_or_refused(text, si):
+    """And text in the neighbourhood of the grammar: no exception but ours, no hang, no NaN."""
+    value = refused_in_one_line(lambda: parse(text, si))
+    assert value is None or math.isfinite(value)
+
+
+@given(st.floats(-1e12, 1e12, allow_nan=False), st.sampled_from([*sorted(UNITS), "-"]))
+def test_a_shown_value_reads_back_to_its_digits(value, si):
+    """format_quantity and parse speak the same units; four digits are kept, powers of ten aside."""
+    text = format_quantity(value, si)
+    number = float(text) if si == "-" else parse(text, si)
+    assert number == pytest.approx(value, rel=6e-4, abs=1e-300)  # half a unit of the fourth digit
+
+
+@given(st.binary(max_size=400))
+def test_any_bytes_are_refused_in_one_line(tmp_path: Path, content: bytes):
+    """A file of noise."""
+    path = tmp_path / "noise.toml"
+    path.write_bytes(content)
+    assert refused_in_one_line(lambda: read_study(path)) is None
+
+
+@given(st.integers(0, len(EXAMPLE) - 1), st.integers(1, 40), st.text(max_size=12))
+def test_a_damaged_study_is_read_or_refused_in_one_line(tmp_path: Path, start: int, length: int, insert: str):
+    """Some characters cut out of the example and others put in."""
+    path = tmp_path / "damaged.toml"
+    path.write_text(EXAMPLE[:start] + insert + EXAMPLE[start + length :], encoding="utf-8", errors="replace")
+    study = refused_in_one_line(lambda: read_study(path))
+    assert study is None or resolved(study)["bearing"]["ball_count"]["value"] >= 3

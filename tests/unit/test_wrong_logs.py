@@ -1,8 +1,6 @@
 # ruff: noqa: E501  each wrong log and its message on a line
 """Wrong logs and column maps: each is refused in one line that says where, what, and what to do."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import raw_logs
