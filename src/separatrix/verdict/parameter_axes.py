@@ -54,6 +54,10 @@ class Parameter:
         return self.unit == WHOLE
 
 
+NOT_OF_A_VERDICT = ("wear.", "cooling.")
+"""Sections of slow time and of heat: no case of a map or sweep depends on them."""
+
+
 def parameters() -> dict[str, Parameter]:
     """Every parameter a map can vary, by name."""
     names = {RESTITUTION: "-", FRICTION: "-", KICK: "m/s"}
@@ -63,7 +67,7 @@ def parameters() -> dict[str, Parameter]:
     left = {
         name: unit
         for name, unit in names.items()
-        if name not in (*SETTINGS, *SHORT) and not name.startswith("wear.")  # of slow time
+        if name not in (*SETTINGS, *SHORT) and not name.startswith(NOT_OF_A_VERDICT)
     }
     return {name: Parameter(name, unit) for name, unit in left.items()}
 
