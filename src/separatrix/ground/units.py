@@ -362,6 +362,7 @@ _READABLE: dict[str, tuple[tuple[float, str], ...]] = {
     "Hz": ((1.0, "Hz"), (1e3, "kHz")),
     "kg": ((1e-6, "mg"), (1e-3, "g"), (1.0, "kg")),
     "N": ((1e-6, "uN"), (1e-3, "mN"), (1.0, "N"), (1e4, "kN")),
+    "N m": ((1e-3, "mN m"), (1.0, "N m"), (1e3, "kN m")),
     "N/m": ((1.0, "N/m"), (1e3, "kN/m"), (1e6, "MN/m")),
     "Pa": ((1.0, "Pa"), (1e3, "kPa"), (1e6, "MPa"), (1e9, "GPa")),
     "m/m/K": ((1e-6, "um/m/K"),),
