@@ -1,6 +1,7 @@
 """Drag, temperatures, flash and boiling of a bearing in its fluid: numbers of another program, limits."""
 
 import math
+from dataclasses import replace
 
 import pytest
 
@@ -102,6 +103,18 @@ def test_heat_leaves_by_the_coolant(study, state):
         friction = found.shaft_power - in_fluid - pocket - land
         assert friction / SPEED == pytest.approx(state.equilibrium.friction_torque, rel=1e-9)
         assert found.shaft_torque * SPEED == pytest.approx(found.shaft_power, rel=1e-12)
+
+
+@pytest.mark.parametrize("swirl", [0.0, 0.3, 0.5, 1.0])
+def test_drag_warms_whichever_ring_turns_the_fluid(study, state, swirl):
+    """A fluid that drives the balls is turned by the inner ring: seen from there it brakes them, as any."""
+    orbit = state.cage_speed
+    found = heat_balance(replace(study, cooling=replace(study.cooling, swirl=swirl)), state)
+    behind = orbit if swirl * SPEED < orbit else SPEED - orbit  # the ring that holds or turns the fluid
+    assert found.ball_drag_power == pytest.approx(13 * RADIUS * abs(found.ball_drag) * behind, rel=1e-9)
+    made_warm = 13 * RADIUS * abs(found.ball_drag) * abs(orbit - swirl * SPEED)  # between ball and fluid
+    assert found.ball_drag_power >= made_warm
+    assert found.coolant_out_temperature > 77.0
 
 
 def test_flash_temperatures(study, state):

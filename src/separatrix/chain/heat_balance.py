@@ -7,6 +7,7 @@ Seen from the outer ring, whose speed is taken off all others, the shaft gives w
 
 with the heat H of every contact, the drag :math:`F_D` on a ball that orbits at v, the moment on its spin, and
 those on both faces of the cage. Drag is small beside what the races hold: it does not move the equilibrium.
+The inner ring turns a fluid that is faster than the balls; v is then their speed behind that ring.
 docs/theory/heat.md has the sources.
 """
 
@@ -137,7 +138,7 @@ class HeatBalance:
     cage_power: Watt  # of the friction at pockets and lands; 0 where no cage was followed
     ball_drag: Newton  # of the fluid on a ball along its orbit; below 0 it drives the ball
     drag_share: Ratio | None  # of it in what the races hold of a ball; null of races without friction
-    ball_drag_power: Watt  # of all balls
+    ball_drag_power: Watt  # of all balls; never below 0
     spin_power: Watt  # of the fluid's moment on the spin of all balls
     cage_drag_power: Watt | None  # of the fluid on both faces of the cage; null without its sizes
     inner_ring_temperature: Kelvin | None
@@ -176,7 +177,7 @@ def heat_balance(
         one - study.operation.outer_speed for one in (study.operation.inner_speed, state.cage_speed)
     )
     drag = ball_drag(fluid, D, math.copysign(1.0, orbit) * R * (orbit - cooling.swirl * ring))
-    drag_power = Z * drag * abs(orbit) * R
+    drag_power = Z * R * abs(drag) * abs(orbit if drag > 0.0 else ring - orbit)
     spin_power = sum(
         spin_moment(fluid, D, one) * one for one in np.linalg.norm(found.ball_spin, axis=1).tolist()
     )
