@@ -18,7 +18,7 @@ from separatrix.chain.heat_balance import (
     temperatures,
 )
 from separatrix.ground.errors import InputError
-from separatrix.study.study import Cooling
+from separatrix.study.study import Cooling, Guidance
 
 LN2 = Fluid(807.9576, 1.63216e-4)  # 77 K, 2 bar
 ORBIT, SPEED, RADIUS = 668.9886, 500.0 * math.pi, 0.0325
@@ -103,6 +103,19 @@ def test_heat_leaves_by_the_coolant(study, state):
         friction = found.shaft_power - in_fluid - pocket - land
         assert friction / SPEED == pytest.approx(state.equilibrium.friction_torque, rel=1e-9)
         assert found.shaft_torque * SPEED == pytest.approx(found.shaft_power, rel=1e-12)
+
+
+@pytest.mark.parametrize("guidance", [Guidance.OUTER, Guidance.INNER])
+def test_the_land_warms_the_ring_that_has_it(study, state, guidance):
+    """40 W at a land: half of it into the ring that guides the cage, none into the other."""
+    study = replace(study, cage=replace(study.cage, guidance=guidance))
+    calm, rubs = (heat_balance(study, state, land_power=power) for power in (0.0, 40.0))
+    inner, outer = (
+        getattr(rubs, name) - getattr(calm, name)
+        for name in ("inner_ring_temperature", "outer_ring_temperature")
+    )
+    assert (inner > outer + 0.5) == (guidance is Guidance.INNER)
+    assert (outer > inner + 0.4) == (guidance is Guidance.OUTER)
 
 
 @pytest.mark.parametrize("swirl", [0.0, 0.3, 0.5, 1.0])

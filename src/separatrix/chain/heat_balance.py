@@ -38,7 +38,7 @@ from separatrix.ground.units import (
     WattPerMetre2,
     format_quantity,
 )
-from separatrix.study.study import CageDesign, Cooling, Study
+from separatrix.study.study import CageDesign, Cooling, Guidance, Study
 
 if TYPE_CHECKING:
     from separatrix.chain.contacts import BearingState, RaceContact
@@ -184,10 +184,11 @@ def heat_balance(
     faces = _cage_faces(study.cage, fluid, orbit, ring)
     in_fluid = drag_power + spin_power + (faces or 0.0)
     inner, outer = (0.5 * float(one.sum()) for one in (found.heat_inner, found.heat_outer))
+    on_inner = study.cage is not None and study.cage.guidance is Guidance.INNER
     heat = Heat(
-        inner_ring=inner,
+        inner_ring=inner + 0.5 * land_power * on_inner,
         balls=inner + outer + 0.5 * pocket_power,
-        outer_ring=outer + 0.5 * land_power,
+        outer_ring=outer + 0.5 * land_power * (not on_inner),
         cage=0.5 * (pocket_power + land_power),
         fluid=in_fluid,
     )
