@@ -130,6 +130,14 @@ def test_drag_warms_whichever_ring_turns_the_fluid(study, state, swirl):
     assert found.coolant_out_temperature > 77.0
 
 
+def test_a_coolant_that_leaves_too_warm_is_noted(study, state):
+    """At 50 g/s it rises by 4 K; a thousandth of it would leave at thousands of kelvin, and boils before."""
+    little = replace(study, cooling=replace(study.cooling, flow=50e-6))
+    (note,) = set(heat_balance(little, state).notes) - set(heat_balance(study, state).notes)
+    assert note.startswith("The coolant leaves at ")
+    assert "At 1 atm it boils before that." in note
+
+
 def test_flash_temperatures(study, state):
     """Of another program: 16.9 and 6.1 K with an effusivity of 4065."""
     found = heat_balance(study, state)

@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from separatrix.chain.creep import track_area
-from separatrix.chain.land_fluid import fluid_property
+from separatrix.chain.land_fluid import NEAR, fluid_property
 from separatrix.ground.errors import InputError
 from separatrix.ground.units import (
     Kelvin,
@@ -219,7 +219,10 @@ def heat_balance(
         flash_outer=flash_outer,
         track_heat=max(tracks),
         boiling_limit=limit,
-        notes=tuple(_beyond(fluid, D, R * abs(orbit - cooling.swirl * ring), max(tracks), limit, study)),
+        notes=(
+            *_beyond(fluid, D, R * abs(orbit - cooling.swirl * ring), max(tracks), limit, study),
+            *(_warmer(study, at, known.coolant_out) if known else ()),
+        ),
     )
 
 
@@ -276,6 +279,18 @@ def boiling_limit(study: Study, temperature: Kelvin) -> WattPerMetre2 | None:
     if latent is None or vapour is None or tension is None or liquid is None:
         return None
     return float(0.131 * latent * math.sqrt(vapour) * (tension * GRAVITY * (liquid - vapour)) ** 0.25)
+
+
+def _warmer(study: Study, inlet: Kelvin, outlet: Kelvin) -> Iterator[str]:
+    """Yield that a coolant leaves warmer than its properties reach; a liquid would boil before."""
+    if outlet > (1.0 + NEAR) * inlet:
+        leaves, enters = (format_quantity(one, "K", 4) for one in (outlet, inlet))
+        is_liquid = fluid_property(study, "latent_heat", inlet) is not None
+        boils = " At 1 atm it boils before that." if is_liquid else ""
+        yield (
+            f"The coolant leaves at {leaves} with the properties that it has at {enters}: temperatures are "
+            f"estimates beyond {100.0 * NEAR:.0f} % of it.{boils} More flow keeps it cooler."
+        )
 
 
 def _beyond(
