@@ -8,7 +8,7 @@ import pytest
 from separatrix.friction.logs.column_map import Conditions
 from separatrix.friction.logs.log import RawLog
 from separatrix.friction.reduction import reduce_log
-from separatrix.friction.wear import NO_GROWTH, sample_wear
+from separatrix.friction.wear import NO_GROWTH, NO_WAY, TOO_FEW, sample_wear
 
 TIME = np.linspace(0.0, 3600.0, 3601)
 NOISE = np.random.Generator(np.random.Philox(7)).normal(size=TIME.size)
@@ -62,3 +62,26 @@ def test_a_depth_that_only_drifts_with_heat_is_said():
         assert found.wear.wear_coefficient is None
         assert NO_GROWTH in found.flags
     assert NO_GROWTH not in reduce_log(LOG).flags
+
+
+@pytest.mark.parametrize(
+    ("changes", "flag"),
+    [
+        ({"distance": None}, NO_WAY),
+        ({"distance": None, "time": None, "cycles": TIME}, NO_WAY),
+        ({"wear_depth": np.full(TIME.size, np.nan)}, TOO_FEW),
+    ],
+)
+def test_why_there_is_no_coefficient_is_said(changes, flag):
+    """A depth without a way, or with gaps, is not one that does not grow."""
+    found = reduce_log(replace(LOG, **changes))
+    assert found.wear.wear_coefficient is None
+    assert flag in found.flags
+    assert NO_GROWTH not in found.flags
+
+
+def test_share_of_a_way_with_gaps():
+    """A way that is not known at its end has the share of the rows that have one."""
+    way = np.where(TIME > 3500.0, np.nan, LOG.distance)
+    found = sample_wear(replace(LOG, distance=way), LOG.conditions, slice(900, 3601))
+    assert found.wear_share == pytest.approx(2600.0 / 3500.0, abs=1e-3)
