@@ -146,6 +146,13 @@ def test_flash_temperatures(study, state):
     assert (found.flash_inner * ratio, found.flash_outer * ratio) == pytest.approx((16.9, 6.1), abs=0.1)
 
 
+def test_flash_is_of_the_steel_of_the_rings(study, state):
+    """Ceramic balls leave the density of the rings, whose conductivity and heat capacity are stated."""
+    light = replace(study.bearing.ball_material, density=3200.0)
+    hybrid = replace(study, bearing=replace(study.bearing, ball_material=light))
+    assert heat_balance(hybrid, state).flash_inner == heat_balance(study, state).flash_inner
+
+
 @pytest.mark.parametrize(
     ("fluid", "temperature", "limit"), [("liquid nitrogen", 77.355, 1.6196e5), ("LOX", 90.188, 2.0524e5)]
 )

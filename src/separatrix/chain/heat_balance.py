@@ -251,11 +251,11 @@ def _flash(study: Study, heat: Watt, at: RaceContact) -> Kelvin | None:
     r"""Rise of a surface as it passes through a contact, half of whose heat goes into it.
 
     :math:`(2/\sqrt\pi)\,(q/2)\,\sqrt{2b/V}/e`: a half-space heated for the time of a pass by the mean of
-    the heat over the ellipse, with the effusivity e of the steel.
+    the heat over the ellipse, with the effusivity e of the rings' steel.
     """
     cooling, steel, a, b = (
         study.cooling,
-        study.bearing.ball_material,
+        study.bearing.ring_material,
         at.ellipse.semi_major,
         at.ellipse.semi_minor,
     )
