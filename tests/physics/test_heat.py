@@ -1,6 +1,7 @@
 """Drag, temperatures, flash and boiling of a bearing in its fluid: numbers of another program, limits."""
 
 import math
+from dataclasses import replace
 
 import pytest
 
@@ -17,7 +18,7 @@ from separatrix.chain.heat_balance import (
     temperatures,
 )
 from separatrix.ground.errors import InputError
-from separatrix.study.study import Cooling
+from separatrix.study.study import Cooling, Guidance
 
 LN2 = Fluid(807.9576, 1.63216e-4)  # 77 K, 2 bar
 ORBIT, SPEED, RADIUS = 668.9886, 500.0 * math.pi, 0.0325
@@ -104,12 +105,52 @@ def test_heat_leaves_by_the_coolant(study, state):
         assert found.shaft_torque * SPEED == pytest.approx(found.shaft_power, rel=1e-12)
 
 
+@pytest.mark.parametrize("guidance", [Guidance.OUTER, Guidance.INNER])
+def test_the_land_warms_the_ring_that_has_it(study, state, guidance):
+    """40 W at a land: half of it into the ring that guides the cage, none into the other."""
+    study = replace(study, cage=replace(study.cage, guidance=guidance))
+    calm, rubs = (heat_balance(study, state, land_power=power) for power in (0.0, 40.0))
+    inner, outer = (
+        getattr(rubs, name) - getattr(calm, name)
+        for name in ("inner_ring_temperature", "outer_ring_temperature")
+    )
+    assert (inner > outer + 0.5) == (guidance is Guidance.INNER)
+    assert (outer > inner + 0.4) == (guidance is Guidance.OUTER)
+
+
+@pytest.mark.parametrize("swirl", [0.0, 0.3, 0.5, 1.0])
+def test_drag_warms_whichever_ring_turns_the_fluid(study, state, swirl):
+    """A fluid that drives the balls is turned by the inner ring: seen from there it brakes them, as any."""
+    orbit = state.cage_speed
+    found = heat_balance(replace(study, cooling=replace(study.cooling, swirl=swirl)), state)
+    behind = orbit if swirl * SPEED < orbit else SPEED - orbit  # the ring that holds or turns the fluid
+    assert found.ball_drag_power == pytest.approx(13 * RADIUS * abs(found.ball_drag) * behind, rel=1e-9)
+    made_warm = 13 * RADIUS * abs(found.ball_drag) * abs(orbit - swirl * SPEED)  # between ball and fluid
+    assert found.ball_drag_power >= made_warm
+    assert found.coolant_out_temperature > 77.0
+
+
+def test_a_coolant_that_leaves_too_warm_is_noted(study, state):
+    """At 50 g/s it rises by 4 K; a thousandth of it would leave at thousands of kelvin, and boils before."""
+    little = replace(study, cooling=replace(study.cooling, flow=50e-6))
+    (note,) = set(heat_balance(little, state).notes) - set(heat_balance(study, state).notes)
+    assert note.startswith("The coolant leaves at ")
+    assert "At 1 atm it boils before that." in note
+
+
 def test_flash_temperatures(study, state):
     """Of another program: 16.9 and 6.1 K with an effusivity of 4065."""
     found = heat_balance(study, state)
     effusivity = math.sqrt(12.0 * study.bearing.ball_material.density * 180.0)
     ratio = 4065.0 / effusivity
     assert (found.flash_inner * ratio, found.flash_outer * ratio) == pytest.approx((16.9, 6.1), abs=0.1)
+
+
+def test_flash_is_of_the_steel_of_the_rings(study, state):
+    """Ceramic balls leave the density of the rings, whose conductivity and heat capacity are stated."""
+    light = replace(study.bearing.ball_material, density=3200.0)
+    hybrid = replace(study, bearing=replace(study.bearing, ball_material=light))
+    assert heat_balance(hybrid, state).flash_inner == heat_balance(study, state).flash_inner
 
 
 @pytest.mark.parametrize(

@@ -7,6 +7,7 @@ Seen from the outer ring, whose speed is taken off all others, the shaft gives w
 
 with the heat H of every contact, the drag :math:`F_D` on a ball that orbits at v, the moment on its spin, and
 those on both faces of the cage. Drag is small beside what the races hold: it does not move the equilibrium.
+The inner ring turns a fluid that is faster than the balls; v is then their speed behind that ring.
 docs/theory/heat.md has the sources.
 """
 
@@ -20,7 +21,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from separatrix.chain.creep import track_area
-from separatrix.chain.land_fluid import fluid_property
+from separatrix.chain.land_fluid import NEAR, fluid_property
 from separatrix.ground.errors import InputError
 from separatrix.ground.units import (
     Kelvin,
@@ -37,7 +38,7 @@ from separatrix.ground.units import (
     WattPerMetre2,
     format_quantity,
 )
-from separatrix.study.study import CageDesign, Cooling, Study
+from separatrix.study.study import CageDesign, Cooling, Guidance, Study
 
 if TYPE_CHECKING:
     from separatrix.chain.contacts import BearingState, RaceContact
@@ -137,7 +138,7 @@ class HeatBalance:
     cage_power: Watt  # of the friction at pockets and lands; 0 where no cage was followed
     ball_drag: Newton  # of the fluid on a ball along its orbit; below 0 it drives the ball
     drag_share: Ratio | None  # of it in what the races hold of a ball; null of races without friction
-    ball_drag_power: Watt  # of all balls
+    ball_drag_power: Watt  # of all balls; never below 0
     spin_power: Watt  # of the fluid's moment on the spin of all balls
     cage_drag_power: Watt | None  # of the fluid on both faces of the cage; null without its sizes
     inner_ring_temperature: Kelvin | None
@@ -176,17 +177,18 @@ def heat_balance(
         one - study.operation.outer_speed for one in (study.operation.inner_speed, state.cage_speed)
     )
     drag = ball_drag(fluid, D, math.copysign(1.0, orbit) * R * (orbit - cooling.swirl * ring))
-    drag_power = Z * drag * abs(orbit) * R
+    drag_power = Z * R * abs(drag) * abs(orbit if drag > 0.0 else ring - orbit)
     spin_power = sum(
         spin_moment(fluid, D, one) * one for one in np.linalg.norm(found.ball_spin, axis=1).tolist()
     )
     faces = _cage_faces(study.cage, fluid, orbit, ring)
     in_fluid = drag_power + spin_power + (faces or 0.0)
     inner, outer = (0.5 * float(one.sum()) for one in (found.heat_inner, found.heat_outer))
+    on_inner = study.cage is not None and study.cage.guidance is Guidance.INNER
     heat = Heat(
-        inner_ring=inner,
+        inner_ring=inner + 0.5 * land_power * on_inner,
         balls=inner + outer + 0.5 * pocket_power,
-        outer_ring=outer + 0.5 * land_power,
+        outer_ring=outer + 0.5 * land_power * (not on_inner),
         cage=0.5 * (pocket_power + land_power),
         fluid=in_fluid,
     )
@@ -217,7 +219,10 @@ def heat_balance(
         flash_outer=flash_outer,
         track_heat=max(tracks),
         boiling_limit=limit,
-        notes=tuple(_beyond(fluid, D, R * abs(orbit - cooling.swirl * ring), max(tracks), limit, study)),
+        notes=(
+            *_beyond(fluid, D, R * abs(orbit - cooling.swirl * ring), max(tracks), limit, study),
+            *(_warmer(study, at, known.coolant_out) if known else ()),
+        ),
     )
 
 
@@ -246,11 +251,11 @@ def _flash(study: Study, heat: Watt, at: RaceContact) -> Kelvin | None:
     r"""Rise of a surface as it passes through a contact, half of whose heat goes into it.
 
     :math:`(2/\sqrt\pi)\,(q/2)\,\sqrt{2b/V}/e`: a half-space heated for the time of a pass by the mean of
-    the heat over the ellipse, with the effusivity e of the steel.
+    the heat over the ellipse, with the effusivity e of the rings' steel.
     """
     cooling, steel, a, b = (
         study.cooling,
-        study.bearing.ball_material,
+        study.bearing.ring_material,
         at.ellipse.semi_major,
         at.ellipse.semi_minor,
     )
@@ -274,6 +279,18 @@ def boiling_limit(study: Study, temperature: Kelvin) -> WattPerMetre2 | None:
     if latent is None or vapour is None or tension is None or liquid is None:
         return None
     return float(0.131 * latent * math.sqrt(vapour) * (tension * GRAVITY * (liquid - vapour)) ** 0.25)
+
+
+def _warmer(study: Study, inlet: Kelvin, outlet: Kelvin) -> Iterator[str]:
+    """Yield that a coolant leaves warmer than its properties reach; a liquid would boil before."""
+    if outlet > (1.0 + NEAR) * inlet:
+        leaves, enters = (format_quantity(one, "K", 4) for one in (outlet, inlet))
+        is_liquid = fluid_property(study, "latent_heat", inlet) is not None
+        boils = " At 1 atm it boils before that." if is_liquid else ""
+        yield (
+            f"The coolant leaves at {leaves} with the properties that it has at {enters}: temperatures are "
+            f"estimates beyond {100.0 * NEAR:.0f} % of it.{boils} More flow keeps it cooler."
+        )
 
 
 def _beyond(

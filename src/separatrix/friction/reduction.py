@@ -16,7 +16,7 @@ from separatrix.friction.logs.column_map import Conditions, of_log
 from separatrix.friction.logs.log import RawLog
 from separatrix.friction.logs.names import MEANINGS
 from separatrix.friction.steady import LONG, METHOD, RunIn, run_in
-from separatrix.friction.wear import NO_GROWTH, NO_WEAR, SampleWear, sample_wear
+from separatrix.friction.wear import NO_WEAR, SampleWear, sample_wear, why_none
 from separatrix.ground.errors import InputError
 from separatrix.ground.units import Array, Ratio, format_number, format_quantity
 
@@ -290,7 +290,7 @@ def reduction(log: RawLog, cut: Place | None = None) -> Reduction:
         *flags(one),
         *notes,
         *more,
-        *[NO_GROWTH] * bool(has_none),
+        *([why_none(log, one.test.conditions, steady_rows)] if has_none else []),
     )
     return replace(one, test=replace(one.test, flags=sentences, wear=worn))
 

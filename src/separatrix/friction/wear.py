@@ -21,6 +21,11 @@ NO_GROWTH = (
     "coefficient."
 )
 
+NO_WAY = (
+    "The wear depth makes no wear coefficient without the way slid: give a distance, or a speed and times."
+)
+TOO_FEW = "The steady part has too few rows with a wear depth for a wear coefficient."
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SampleWear:
@@ -67,5 +72,14 @@ def sample_wear(log: RawLog, conditions: Conditions, steady: slice) -> SampleWea
     error = float(np.sqrt((rest**2).sum() / (STRETCHES - 2) / across))
     if slope <= SURE * error:
         return NO_WEAR
-    share = float((along[-1] - along[0]) / (way[-1] - way[0]))
+    share = float(np.nanmax(along) - np.nanmin(along)) / float(np.nanmax(way) - np.nanmin(way))
     return SampleWear(wear_coefficient=slope / pressure, wear_error=error / pressure, wear_share=share)
+
+
+def why_none(log: RawLog, conditions: Conditions, steady: slice) -> str:
+    """Why a log with a wear depth and a pressure has no wear coefficient, a sentence."""
+    way = slid(log, conditions)
+    if way is None or log.wear_depth is None:
+        return NO_WAY
+    there = np.isfinite(np.asarray(log.wear_depth)[steady]) & np.isfinite(way[steady])
+    return TOO_FEW if there.sum() < 2 * STRETCHES else NO_GROWTH
