@@ -218,7 +218,7 @@ def tool_command(tool: Tool, about: str) -> click.Command:
 def run_tool(tool: Tool, given: Given) -> int:
     """Answer a tool's question and return the exit status; with a bar, if it takes time."""
     usual = Path(tool.folder) if tool.folder and not given["json"] else None
-    with interruptible("no answer was given."):
+    with interruptible(tool.ended):
         options = options_of(tool, given)
         to = tool.pictures(options) if tool.pictures else given.get("out") or usual
 

@@ -398,4 +398,5 @@ VERB = Tool(
     rows="tests",
     takes_time=True,
     pictures=lambda options: options.out and options.out.with_name(f"{options.out.stem}-plots"),
+    ended="no friction file was written.",
 )

@@ -72,7 +72,7 @@ class Tool:
     its document, and `page` makes the page of that. `rows` is the key of its main list, `folder` the usual
     place of its files, empty for one that writes none; one that `writes_data` writes more than its document
     and its text. `help` is its line of help if that is not in `TOOLS`. One with `pictures` writes these
-    alone, into the folder that this returns for its options.
+    alone, into the folder that this returns for its options. `ended` is what an interrupt leaves undone.
     """
 
     name: str
@@ -86,6 +86,7 @@ class Tool:
     folder: str = ""
     writes_data: bool = True
     pictures: Callable[[Any], Path | None] | None = None
+    ended: str = "no answer was given."
 
     def shown_options(self) -> Shown:
         """Return what a door shows of each option."""
