@@ -241,6 +241,7 @@ def test_a_test_at_the_speed_of_the_mission_stands_for_itself():
     [
         ([{"operation.inner_speed": 1e3}], "needs a column time_share"),
         ([{"cage.mass": 0.02, "time_share": 1.0}], "must vary operation.inner_speed .* alone; got cage.mass"),
+        ([{"operation.inner_speed": 0.0, "time_share": 1.0}], "a phase in which the rings turn"),
         ([{"operation.axial_load": 1e3, "time_share": 1.0}] * 13, "must be at most 12 of a duty cycle"),
     ],
 )

@@ -13,7 +13,7 @@ from test_study_refusals import VALID
 
 import separatrix
 from separatrix.cage import RunOutcome
-from separatrix.front import main
+from separatrix.front import cli, main
 from separatrix.ground.errors import InputError
 from separatrix.ground.files import size_of
 
@@ -52,6 +52,14 @@ def test_first_words(capsys):
     assert len(lines) == 3
     assert all(word in one for one, word in zip(lines, ("cage", "separatrix demo", "--help"), strict=True))
     assert [*Path().iterdir()] == []
+
+
+def test_demo_ranks_the_shipped_study(monkeypatch):
+    """With the options of `rank`, and nothing else of its own."""
+    asked = {}
+    monkeypatch.setattr(cli, "run", lambda verb, given: asked.update(given, verb=verb.name) or 0)
+    assert main(["demo", "--model", "paper", "--json"]) == 0
+    assert (asked["verb"], asked["study"], asked["model"]) == ("rank", "cryogenic-turbopump", "paper")
 
 
 USAGE = {

@@ -154,7 +154,7 @@ def test_an_interrupt_leaves_no_friction_file(logs):
     out, error = process.communicate(timeout=60)
     assert process.returncode == 130
     assert out == ""
-    assert error == "separatrix: interrupted; no answer was given.\n"
+    assert error == "separatrix: interrupted; no friction file was written.\n"
     assert not (logs / "f.toml").exists()
     assert not (logs / "f-plots").exists()
 

@@ -159,7 +159,12 @@ def life(
     low = max(float(every.min()), LEAST_FRICTION)
     frictions = np.geomspace(low, max(float(every.max()), APART * low), FRICTIONS)
     clearances = _clearances(study, solution.stated_design.pocket_clearance)
-    phases = [_duty(varied(study, one), candidate, share) for share, one in _shared(cases)]
+    parts = [(share, varied(study, one)) for share, one in _shared(cases)]
+    phases = [_duty(one, candidate, share) for share, one in parts if _turns(one)]  # nothing wears at rest
+    if not phases:
+        raise InputError("--cases", "needs a phase in which the rings turn against each other")
+    if accelerated is not None and accelerated == study.operation.outer_speed:
+        raise InputError("--accelerated", "must differ from the speed of the outer ring")
     test = accelerated and _duty(varied(study, {SPEED: accelerated}), candidate, 1.0)
 
     def node(place: Place) -> Node:

@@ -79,27 +79,25 @@ def heat_blocks(heat: Part | None) -> list[Block]:
     """Return torque, drag and temperatures of a bearing in its fluid; nothing without [cooling]."""
     if heat is None:
         return []
-    drag, faces, boils = "{ball_drag} on each", "", ""
-    drag += ", {drag_share} of what the races hold" if "drag_share" in heat else ""
-    faces = "; cage {cage_drag_power}" if "cage_drag_power" in heat else "; cage not without its sizes"
+    held = ", {drag_share} of what the races hold" if "drag_share" in heat else ""
+    sense = " (below 0: the fluid drives it)" if heat.ball_drag < 0.0 else ""
+    drag = f"{{ball_drag}} on each ball{sense}{held}; {{ball_drag_power}} in all"
+    faces = "{cage_drag_power}" if "cage_drag_power" in heat else "needs its three sizes in [cage]"
     boils = "; {boiling_limit} dries it" if "boiling_limit" in heat else ""
-    warm = (
-        "inner ring {inner_ring_temperature}, balls {ball_temperature}, outer ring {outer_ring_temperature}"
-    )
-    warm += ", cage {cage_temperature}" if "cage_temperature" in heat else ""
+    warm = "inner ring {inner_ring_temperature}, balls {ball_temperature}, outer ring "
+    warm += "{outer_ring_temperature}" + ", cage {cage_temperature}" * ("cage_temperature" in heat)
+    warm += "; the coolant leaves at {coolant_out_temperature}"
     flash = "{flash_inner} inner, {flash_outer} outer race, most loaded ball"
     return [
         Heading("Torque and heat with the fluid"),
         facts(
             fact(heat, "shaft_torque"),
             fact(heat, "shaft_power"),
-            (
-                "Drag of the fluid",
-                fill(heat, f"balls {drag}: {{ball_drag_power}}; their spin {{spin_power}}{faces}"),
-            ),
+            ("Drag of the balls", fill(heat, drag)),
+            ("Fluid on their spin", fill(heat, "{spin_power}")),
+            ("Fluid on the faces of the cage", fill(heat, faces)),
             ("Friction of the cage", fill(heat, "{cage_power}") if heat.cage_power else None),
-            ("Temperatures", fill(heat, warm) if "balls" in warm and "ball_temperature" in heat else None),
-            fact(heat, "coolant_out_temperature") if "coolant_out_temperature" in heat else ("Coolant", None),
+            ("Temperatures", fill(heat, warm) if "ball_temperature" in heat else None),
             ("Flash temperatures", fill(heat, flash) if "flash_inner" in heat else None),
             ("Heat into the hotter track", fill(heat, "{track_heat}" + boils)),
         ),
