@@ -149,9 +149,7 @@ class HeatBalance:
     flash_inner: Kelvin | None  # rise of a surface in the contact with the inner race, most loaded ball
     flash_outer: Kelvin | None  # the same at the outer race
     track_heat: WattPerMetre2  # that the ring takes in, over its track; of the hotter one
-    boiling_limit: (
-        WattPerMetre2 | None
-    )  # above which a liquid leaves a surface dry, at the library's pressure
+    boiling_limit: WattPerMetre2 | None  # above which a surface dries, at the library's pressure
     notes: tuple[str, ...] = ()  # where a model leaves its range, a sentence each
 
 

@@ -185,7 +185,7 @@ def faster(answer: Part) -> Iterator[str]:
         "duty, the pockets of a calm cage as {pocket_time}.",
     )
     if test.probability_stable < answer.course[0].probability_stable - 0.2:
-        yield "It runs another cage motion than the mission: its wear does not stand for it."
+        yield "Its cage moves otherwise than that of the mission: do not scale its wear to the mission."
 
 
 def life_figure(answer: Part) -> Figure:

@@ -80,9 +80,7 @@ def compute(study: Study, options: Options) -> SimulationAnswer:
     def followed(cage: MovingCage, kick: float, until: float | None = None) -> History:
         return follow(cage, kick=kick, run=options.run, samples=MOST_SHOWN, until=until, **asked)
 
-    def grown(chain: Solution, kick: float) -> Followed:
-        cage = of.cage_of(chain)
-        found = followed(cage, kick)
+    def grown(chain: Solution, cage: MovingCage, kick: float, found: History) -> Followed:
         if not lasts(found):
             return chain, cage, found
         if found.largest_contact_force > force_limit(cage, transmitted_force(chain)):
@@ -91,7 +89,10 @@ def compute(study: Study, options: Options) -> SimulationAnswer:
 
     history, signs = followed(cage, speed), None
     if eta is None and not study.operation.ramp_time:
-        signs = rig_signs(grown(solution, speed), grown(slower(solution), SLOWER * speed))
+        other, less = slower(solution), SLOWER * speed
+        its = of.cage_of(other)
+        slow = grown(other, its, less, followed(its, less))
+        signs = rig_signs(grown(solution, cage, speed, history), slow)
     found, made_of = force_limit(cage, transmitted_force(solution)), cage_candidate(study)
     limit = found if isfinite(found) else None
     heat = cage.land_friction * history.rubbing_force * history.rubbing_speed

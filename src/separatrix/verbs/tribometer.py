@@ -253,7 +253,7 @@ def _worn(tests: Sequence[Part]) -> Iterator[str]:
 
 
 def _next_test(count: int) -> float:
-    """Standard deviations of so many tests within which another one lies, 95 % (Student)."""
+    """Half-width of the 95 % prediction interval of another test, over the standard deviation (Student)."""
     from scipy.special import stdtrit
 
     return float(stdtrit(count - 1, 0.975)) * math.sqrt(1.0 + 1.0 / count)

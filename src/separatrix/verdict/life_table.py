@@ -69,7 +69,7 @@ LEAST_FRICTION, APART = 1e-3, 1.1
 """Of a race in the table, and the least ratio of its ends."""
 
 MOST_COVERS = 700.0
-"""Thickness of a film over that at which it covers 63 %: the exponential of more is no number."""
+"""Thickness of a film over that at which it covers 63 %: the exponential of more overflows."""
 
 STEEP = 10.0
 """Steepness where no searched friction is enough: P(unstable) is next to 0 or 1 there by any."""

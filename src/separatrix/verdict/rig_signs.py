@@ -1,4 +1,4 @@
-"""What a test rig sees of a running cage: torque, how it goes with speed, and the line of a whirl.
+"""What a test rig sees of a running cage: torque, how it grows with speed, and the frequency of a whirl.
 
 A stable cage leaves the torque to the balls on their races, which in a slow bearing does not depend on speed
 (in a fast one centrifugal load adds to it); an unstable one adds friction that grows with speed: the torque
@@ -28,9 +28,7 @@ SLOWER: Ratio = 0.8
 class RigSigns:
     """Torque of the running bearing and its signs, by one run and one at lower speed."""
 
-    bearing_torque: (
-        NewtonMetre  # of the shaft: friction of races, pockets and lands, and the fluid of [cooling]
-    )
+    bearing_torque: NewtonMetre  # of the shaft: races, pockets, lands, and the fluid of [cooling]
     cage_torque: NewtonMetre  # the part of it by friction at pockets and lands
     pocket_heat: Watt  # of friction in all pockets at the end of the run
     pocket_share: Ratio  # of it in all power that the shaft gives
