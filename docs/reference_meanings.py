@@ -10,7 +10,7 @@ from dataclasses import fields, is_dataclass
 from typing import NamedTuple, get_args, get_type_hints
 
 from separatrix.ground.plain_data import field_axes, field_units
-from separatrix.verbs.parts.quantity_text import QUANTITIES
+from separatrix.present.quantity_text import QUANTITIES
 
 SECTION = re.compile(
     r"^(?:Attributes|Parameters)\n-+\n(.*?)(?=\n\n\S[^\n]*\n---|\Z)", re.DOTALL | re.MULTILINE

@@ -18,12 +18,12 @@ from separatrix.friction.logs.log import ColumnRead, RawLog
 from separatrix.friction.reduction import TestCourse, TestFriction
 from separatrix.ground.schema import Described, is_record, keys_of
 from separatrix.ground.units import UNITS, format_quantity
+from separatrix.present.quantity_text import QUANTITIES
 from separatrix.study import study
 from separatrix.study.ball_bearing import Material
 from separatrix.study.template import keys_in, remark_of, sections, study_keys
 from separatrix.verbs import cage_answers, chain_answers
 from separatrix.verbs.compare import Row
-from separatrix.verbs.parts.quantity_text import QUANTITIES
 from separatrix.verdict.swept_cases import Duty, Sweep, WorstCase
 
 KEYS = """# Keys of a study

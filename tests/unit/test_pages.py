@@ -15,7 +15,7 @@ from separatrix.front import api, main
 from separatrix.ground.document import part_of
 from separatrix.ground.errors import InputError
 from separatrix.ground.quantity import Estimate
-from separatrix.present import html
+from separatrix.present import html, quantity_text
 from separatrix.present.blocks import Facts, Heading, Level, Note, Picture, Table, View
 from separatrix.present.draw import save
 from separatrix.present.figure import Axis, Figure, Panel, Trace
@@ -25,7 +25,6 @@ from separatrix.present.text import text
 from separatrix.study.reading import read_study
 from separatrix.verbs import VERBS, verb_named
 from separatrix.verbs.answer_files import page_of_document, refusing_damage
-from separatrix.verbs.parts import quantity_text
 from separatrix.verdict.ledger import NAME
 from separatrix.verdict.long_jobs import Interrupted
 

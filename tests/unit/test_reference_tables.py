@@ -16,8 +16,8 @@ from reference_tables import (
     units_of_name,
 )
 
+from separatrix.present.quantity_text import QUANTITIES
 from separatrix.study.template import sections, study_keys
-from separatrix.verbs.parts.quantity_text import QUANTITIES
 from separatrix.verdict.ranking_records import Ranked
 
 BY_NAME = {"study", "provenance", "units", "metadata", "slopes", "tested"}

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 
 from separatrix.ground.document import Part
 from separatrix.present.blocks import Equation, Heading, Page, Table, facts, text_column
+from separatrix.present.quantity_text import by_race, column, fact, fill, show
 from separatrix.verbs.parts.answer_page import page_of
 from separatrix.verbs.parts.chain_blocks import clearance_blocks, heat_blocks
-from separatrix.verbs.parts.quantity_text import by_race, column, fact, fill, show
 from separatrix.verbs.verb import NoOptions, Verb
 
 if TYPE_CHECKING:

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from separatrix.ground.document import Part
 from separatrix.present.blocks import Heading, Level, Note, Page, facts, grouped
+from separatrix.present.quantity_text import fact, fill, show
 from separatrix.verbs.parts.answer_page import APPENDIX, bearing_facts, entry_words, page_of
 from separatrix.verbs.parts.bearing_drawing import bearing_picture
 from separatrix.verbs.parts.chain_blocks import clearance_facts
-from separatrix.verbs.parts.quantity_text import fact, fill, show
 from separatrix.verbs.verb import NoOptions, Verb
 
 if TYPE_CHECKING:

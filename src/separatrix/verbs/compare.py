@@ -24,6 +24,7 @@ from separatrix.ground.quantity import ABSENT, Estimate, Quantity
 from separatrix.ground.toml import path_text
 from separatrix.ground.units import printable
 from separatrix.present.blocks import Cell, Column, Heading, Level, Note, Page, Table, facts, text_column
+from separatrix.present.quantity_text import ends_of, quantity
 from separatrix.verbs.answer_files import (
     AGAIN,
     VERBS,
@@ -33,7 +34,6 @@ from separatrix.verbs.answer_files import (
     refusing_damage,
 )
 from separatrix.verbs.parts.answer_page import value_words
-from separatrix.verbs.parts.quantity_text import ends_of, quantity
 from separatrix.verbs.parts.verdict_blocks import MARK
 from separatrix.verbs.verb import Option, Tool
 

@@ -12,8 +12,8 @@ from separatrix.ground.errors import InputError
 from separatrix.ground.units import parse
 from separatrix.present.blocks import Heading, Level, Note, Page, Picture, Table, facts, text_column
 from separatrix.present.figure import BLUE, GREEN, VERMILION, Across, Band, Figure, Panel, Trace
+from separatrix.present.quantity_text import all_numbers, axis, column, fill, quantity, show
 from separatrix.verbs.parts.answer_page import figure, page_of
-from separatrix.verbs.parts.quantity_text import all_numbers, axis, column, fill, quantity, show
 from separatrix.verbs.verb import Option, Samples, Verb
 
 if TYPE_CHECKING:

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from separatrix.ground.document import Document, Part
 from separatrix.ground.units import UNITS, format_number
+from separatrix.present import quantity_text as q
 from separatrix.present.blocks import Column, Heading, Note, Page, Picture, Table, facts, grouped, text_column
 from separatrix.present.figure import BLACK, VERMILION, Cells, Figure, Hatched, Mark, Panel, Trace
-from separatrix.verbs.parts import quantity_text as q
 from separatrix.verbs.parts.answer_page import figure, is_chosen, page_of
 from separatrix.verbs.parts.verdict_blocks import linear_law, pocket_friction
 from separatrix.verbs.verb import Kick, Option, Verb

@@ -26,8 +26,8 @@ from separatrix.present.blocks import (
     grouped,
     text_column,
 )
+from separatrix.present.quantity_text import known_columns
 from separatrix.verbs.parts.answer_page import friction_columns
-from separatrix.verbs.parts.quantity_text import known_columns
 from separatrix.verbs.verb import Option, Tool
 
 if TYPE_CHECKING:

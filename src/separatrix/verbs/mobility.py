@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 from separatrix.ground.document import Part
 from separatrix.present.blocks import Equation, Heading, Note, Page, Picture, facts
 from separatrix.present.figure import BLUE, GREEN, GREY, VERMILION, Across, Figure, Mark, Panel, Trace
+from separatrix.present.quantity_text import axis, cell, fact, fill, named, places_table, show
 from separatrix.verbs.parts.answer_page import figure, page_of
-from separatrix.verbs.parts.quantity_text import axis, cell, fact, fill, named, places_table, show
 from separatrix.verbs.verb import NoOptions, Verb
 
 if TYPE_CHECKING:

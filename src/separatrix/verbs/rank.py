@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from separatrix.ground.document import Part
 from separatrix.present import figure as fig
+from separatrix.present import quantity_text as q
 from separatrix.present.blocks import (
     Block,
     Column,
@@ -22,7 +23,6 @@ from separatrix.present.blocks import (
     grouped,
     text_column,
 )
-from separatrix.verbs.parts import quantity_text as q
 from separatrix.verbs.parts import verdict_blocks as of
 from separatrix.verbs.parts.answer_page import figure, page_of
 from separatrix.verbs.parts.chain_blocks import basis_facts, restitution_blocks

@@ -10,9 +10,9 @@ from separatrix.ground.document import Part
 from separatrix.ground.units import format_number
 from separatrix.present.blocks import Block, Cell, Column, Level, Note, Page, Picture, Table
 from separatrix.present.figure import SEQUENCE, Figure, Mark, Panel, Trace
+from separatrix.present.quantity_text import axis, fill, number_of, place_column, quantity
 from separatrix.verbs.parts.answer_page import entry_words, figure, page_of
 from separatrix.verbs.parts.chain_blocks import clearance_blocks, restitution_blocks
-from separatrix.verbs.parts.quantity_text import axis, fill, number_of, place_column, quantity
 from separatrix.verbs.verb import NoOptions, Verb
 
 if TYPE_CHECKING:

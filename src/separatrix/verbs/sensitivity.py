@@ -20,9 +20,9 @@ from separatrix.present.blocks import (
     grouped,
     text_column,
 )
+from separatrix.present.quantity_text import all_numbers, column, fill, number_of, show
 from separatrix.verbs.parts import verdict_blocks as of
 from separatrix.verbs.parts.answer_page import page_of
-from separatrix.verbs.parts.quantity_text import all_numbers, column, fill, number_of, show
 from separatrix.verbs.parts.verdict_blocks import MARK, each_verdict, evidence_column, judged, verdict
 from separatrix.verbs.verb import Samples, Verb
 

@@ -12,9 +12,9 @@ from separatrix.ground.errors import InputError
 from separatrix.ground.units import NUMBER, printable
 from separatrix.present.blocks import Block, Facts, Heading, Level, Note, Page, Picture, View, facts
 from separatrix.present.figure import Figure, Panel
+from separatrix.present.quantity_text import fill, places_table, show
 from separatrix.verbs.parts.answer_page import figure, figure_heading, page_of
 from separatrix.verbs.parts.chain_blocks import clearance_blocks, heat_blocks
-from separatrix.verbs.parts.quantity_text import fill, places_table, show
 from separatrix.verbs.parts.verdict_blocks import DIRECTIONS, pocket_friction, power_facts
 from separatrix.verbs.verb import Kick, Option, Verb
 

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 from separatrix.ground.document import Part
 from separatrix.present.blocks import Heading, Level, Note, Page, Picture, facts
 from separatrix.present.figure import Figure, Mark, Trace
+from separatrix.present.quantity_text import fill
 from separatrix.verbs.parts.answer_page import figure, page_of
 from separatrix.verbs.parts.chain_blocks import basis_facts
-from separatrix.verbs.parts.quantity_text import fill
 from separatrix.verbs.parts.verdict_blocks import curve_blocks, curve_panel, pocket_friction
 from separatrix.verbs.verb import NoOptions, Verb
 

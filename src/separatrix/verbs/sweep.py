@@ -11,9 +11,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 from separatrix.ground.document import Part
+from separatrix.present import quantity_text as q
 from separatrix.present.blocks import Column, Heading, Note, Page, Picture, Table, facts, text_column
 from separatrix.present.figure import CYCLE, GREY, MARKERS, Across, Axis, Figure, Mark, Panel
-from separatrix.verbs.parts import quantity_text as q
 from separatrix.verbs.parts.answer_page import figure, page_of
 from separatrix.verbs.verb import Option, Verb
 

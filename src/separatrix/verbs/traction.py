@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 from separatrix.ground.document import Part
 from separatrix.present import figure as fig
 from separatrix.present.blocks import Equation, Heading, Level, Note, Page, Picture, Table
+from separatrix.present.quantity_text import axis, by_race, fill, number_of, place_column, show
 from separatrix.verbs.parts.answer_page import figure, page_of
-from separatrix.verbs.parts.quantity_text import axis, by_race, fill, number_of, place_column, show
 from separatrix.verbs.verb import NoOptions, Verb
 
 if TYPE_CHECKING:

@@ -35,7 +35,7 @@ from separatrix.present.blocks import (
     grouped,
     text_column,
 )
-from separatrix.verbs.parts.quantity_text import column, fill, itself, known_columns, quantity
+from separatrix.present.quantity_text import column, fill, itself, known_columns, quantity
 from separatrix.verbs.verb import Option, Tool
 
 if TYPE_CHECKING:

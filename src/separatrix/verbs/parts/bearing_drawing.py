@@ -15,8 +15,8 @@ from separatrix.ground.document import Part
 from separatrix.ground.units import Array, Metre, Radian
 from separatrix.present.blocks import Picture
 from separatrix.present.figure import GREY, VERMILION, Axis, Mark, Panel, Trace
+from separatrix.present.quantity_text import show
 from separatrix.verbs.parts.answer_page import entry_words, figure, stated
-from separatrix.verbs.parts.quantity_text import show
 
 STEEL, BALL, CAGE = "#c9ced6", "#eef1f5", "#e8c27a"
 SHOULDER, WALL, WIDTH, CAGE_WIDTH = 0.3, 0.22, 1.5, 1.36

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from separatrix.ground.document import Part
 from separatrix.present.blocks import Block, Cell, Column, Equation, Heading, Level, Table, facts, text_column
+from separatrix.present.quantity_text import cell, fact, fill, named, show
 from separatrix.verbs.parts.answer_page import bearing_facts
-from separatrix.verbs.parts.quantity_text import cell, fact, fill, named, show
 
 
 def clearance_blocks(found: Part | None) -> list[Block]:

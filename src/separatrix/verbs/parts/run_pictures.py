@@ -12,7 +12,7 @@ from scipy.interpolate import CubicHermiteSpline
 from separatrix.ground.document import Part
 from separatrix.ground.units import Array, Hertz, Metre
 from separatrix.present import figure as fig
-from separatrix.verbs.parts.quantity_text import axis, show
+from separatrix.present.quantity_text import axis, show
 
 AROUND = np.linspace(0.0, 2 * np.pi, 721)
 """Directions in which boundaries are drawn: half a degree apart."""

@@ -7,10 +7,10 @@ from dataclasses import replace
 from math import hypot, inf, log, pi
 
 from separatrix.ground.document import Part
+from separatrix.present import quantity_text as q
 from separatrix.present.blocks import Block, Cell, Column, Equation, Level, Note, Table, grouped, text_column
 from separatrix.present.figure import BLUE, GREY, Across, Band, Label, Mark, Panel, Trace
-from separatrix.verbs.parts import quantity_text as q
-from separatrix.verbs.parts.quantity_text import all_numbers, axis, cell, column, fill, number_of, show
+from separatrix.present.quantity_text import all_numbers, axis, cell, column, fill, number_of, show
 
 DIRECTIONS = {1: "forward", -1: "backward", 0: ""}
 MARK = "*"
