@@ -10,8 +10,8 @@ from scipy.integrate import quad
 
 from separatrix.ground.document import Part
 from separatrix.present import draw, view
+from separatrix.present.view import A_TURN, AROUND, MOST_FRAMES, frame_moments, scene
 from separatrix.verbs.parts import run_pictures
-from separatrix.verbs.parts.run_pictures import A_TURN, AROUND, MOST_FRAMES, frame_moments, scene
 
 LENGTHS = ("position", "axial_place", "half_play", "largest_offset")
 
@@ -97,7 +97,7 @@ def test_the_ball_set_turns_by_the_integral_of_its_speed():
 
     expected = [quad(speed, 0.0, t, points=[4e-3])[0] for t in answer.time]
     # quadrature
-    assert run_pictures.turned_by(answer.cage, np.array(answer.time)) == pytest.approx(expected, rel=1e-9)
+    assert view.turned_by(answer.cage, np.array(answer.time)) == pytest.approx(expected, rel=1e-9)
 
 
 @pytest.mark.parametrize("answer", [ODD["ordinary"], ODD["in space"], ODD["one sample"]])
@@ -119,7 +119,7 @@ def test_the_force_of_a_frame_is_the_largest_since_the_one_before():
     """Of samples between two frames none is lost."""
     forces = np.zeros((6, 1))
     forces[2] = 7.0
-    assert run_pictures._largest_since(forces, np.array([0, 3, 5])).ravel().tolist() == [0.0, 7.0, 0.0]
+    assert view._largest_since(forces, np.array([0, 3, 5])).ravel().tolist() == [0.0, 7.0, 0.0]
 
 
 def test_a_course_in_time_keeps_its_extremes():

@@ -268,10 +268,9 @@ def _figure(answer: Part) -> Figure:
 
 
 def _view(answer: Part) -> str:
-    from separatrix.present.view import page as view
-    from separatrix.verbs.parts.run_pictures import scene
+    from separatrix.present import view
 
-    return view(figure_heading(answer), scene(answer))
+    return view.page(figure_heading(answer), view.scene(answer))
 
 
 VERB = Verb(
