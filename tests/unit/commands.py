@@ -50,7 +50,7 @@ materials = ["Armalon", "Meldin HTC 100"]
 def work_undrawn(pipe: Connection, root: Path) -> None:
     """Compute for the page as `separatrix.front.page.worker.work` does, but leave pictures out."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("separatrix.verbs.answer_files._draw", lambda *_: None)
+        patch.setattr("separatrix.present.html.write_drawn", lambda *_: None)
         work(pipe, root)
 
 

@@ -27,4 +27,4 @@ def page(tmp_path):
 @pytest.fixture
 def undrawn(monkeypatch):
     """Leave the pictures of answers out, where a test is about something else."""
-    monkeypatch.setattr("separatrix.verbs.answer_files._draw", lambda *_: None)
+    monkeypatch.setattr("separatrix.present.html.write_drawn", lambda *_: None)

@@ -143,21 +143,14 @@ def options_of(asked: Tool, given: Given) -> Any:
 # What a command does, from its question to its files.
 
 
-def answered(
-    asked: Tool,
-    given: Given,
-    compute: Callable[[], Document],
-    to: Path | None,
-    *,
-    only_pictures: bool = False,
-) -> Document:
+def answered(asked: Tool, given: Given, compute: Callable[[], Document], to: Path | None) -> Document:
     """Compute a document, print it or its page, and save it in `to`, tested before the work; return it.
 
     With `--quiet` the page is without its notes.
     """
     from separatrix.present.blocks import Level
     from separatrix.present.text import text
-    from separatrix.verbs.answer_files import page_of_document, save_answer, save_pictures
+    from separatrix.verbs.answer_files import page_of_document, save_answer
 
     json, quiet = given["json"], given.get("quiet", False)
     with contextlib.nullcontext() if to is None else writable_folder(to):
@@ -171,9 +164,9 @@ def answered(
         if page is None or to is None:
             return made
         with progress_bar("files", quiet=quiet):  # this takes as long again
-            save_pictures(to, page) if only_pictures else save_answer(to, asked, made, page=page)
+            save_answer(to, asked, made, page=page)
         if not json and not quiet:
-            what = "Pictures of the tests" if only_pictures else "Text, figures and data"
+            what = "Pictures of the tests" if asked.pictures else "Text, figures and data"
             answer(f"\n{what} are in {to}/\n")
     return made
 
@@ -227,7 +220,7 @@ def run_tool(tool: Tool, given: Given) -> int:
                 how = (given["jobs"] or processors(), progress) if tool.takes_time else ()
                 return breakable(partial(tool.compute, options, *how))
 
-        answered(tool, given, compute, to, only_pictures=tool.pictures is not None)
+        answered(tool, given, compute, to)
     return ANSWERED
 
 

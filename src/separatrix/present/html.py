@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import base64
 import json
+import logging
 from collections.abc import Callable, Mapping
 from html import escape
-from importlib.resources import files
+from pathlib import Path
 from typing import Any
 
 from separatrix.ground.errors import harmless
@@ -27,6 +28,7 @@ from separatrix.present.blocks import (
     View,
     spans,
 )
+from separatrix.present.view import script_json, static
 
 GREEK = {"eta": "\N{GREEK SMALL LETTER ETA}", "mu": "\N{GREEK SMALL LETTER MU}"}
 GREEK |= {"zeta": "\N{GREEK SMALL LETTER ZETA}", "alpha": "\N{GREEK SMALL LETTER ALPHA}"}
@@ -53,13 +55,10 @@ def html(
     shown = page.at(level)
     heads = [one for one in shown.blocks if isinstance(one, Heading) and one.depth == 2]
     contents = "".join(f'<li><a href="#{_id(one.text)}">{inline(one.text)}</a></li>' for one in heads)
-    answers = json.dumps(documents or {}, allow_nan=False, separators=(",", ":"))
-    for mark in "&<>":  # so that no text ends the script element around the documents
-        answers = answers.replace(mark, f"\\u{ord(mark):04x}")
+    answers = script_json(documents or {})
     title, subtitle = escape(page.title), escape(page.subtitle)
-    style = (
-        _static("page.css").replace("@TITLE@", _css(page.title)).replace("@SUBTITLE@", _css(page.subtitle))
-    )
+    style = static("page.css").replace("@TITLE@", _css(page.title))
+    style = style.replace("@SUBTITLE@", _css(page.subtitle))
     behind = (
         f'<script type="application/json" id="separatrix-answers">{answers}</script>' if documents else ""
     )
@@ -87,10 +86,25 @@ def html(
 <div id="tip" role="status" hidden></div>
 {behind}
 <script>
-{_static("page.js")}</script>
+{static("page.js")}</script>
 </body>
 </html>
 """)
+
+
+def write_drawn(page: Page, folder: Path, name: str = "") -> None:
+    """Write the pictures and views of a page, each drawn once, and with a name the page with them."""
+    logging.getLogger("matplotlib").setLevel(logging.ERROR)  # its remarks on fonts
+    pictures: dict[str, str] = {}
+    for one in page.blocks:
+        if isinstance(one, View):
+            (folder / f"{one.name}.html").write_text(one.html(), encoding="utf-8")
+        elif isinstance(one, Picture):
+            drawing = draw.save(one.figure(), *(folder / f"{one.name}{end}" for end in (".png", ".svg")))
+            pictures[one.name] = picture_html(one, drawing)
+    if name:
+        text = html(page, level=Level.REPORT | Level.FULL, picture=lambda one: pictures[one.name])
+        (folder / f"{name}.html").write_text(text, encoding="utf-8")
 
 
 def body(
@@ -101,10 +115,6 @@ def body(
 ) -> str:
     """Return the blocks of a page; `picture` shows a picture otherwise than as SVG, `view` a view."""
     return "\n".join(_block(one, picture or drawn, view or _view) for one in page.at(level).blocks)
-
-
-def _static(name: str) -> str:
-    return files("separatrix.present").joinpath("static", name).read_text(encoding="utf-8")
 
 
 def _css(text: str) -> str:

@@ -207,10 +207,6 @@ def page(heading: Sequence[str], scene: Mapping[str, Any]) -> str:
     beginning and end of each part of the run that is shown [s].
     """
     title, *about = heading
-    # a text of the study may hold any mark: the JSON is inside a script
-    found = json.dumps(scene, allow_nan=False, separators=(",", ":"))
-    for sign in "<>&\u2028\u2029":
-        found = found.replace(sign, f"\\u{ord(sign):04x}")
     largest = scene["largest"]
     forces = [f"0 to {format_number(one, 3)} N {where}" for one, where in zip(largest, WHERE, strict=True)]
     shown = ", ".join(forces[: 1 + (largest[1] > 0.0)])
@@ -220,12 +216,21 @@ def page(heading: Sequence[str], scene: Mapping[str, Any]) -> str:
         "ABOUT": html.escape("\n".join(about)),
         "MOST": f"{shown}; root scale, the largest since the frame before",
         "SHOWN": f"Frames show {spans}.",
-        "DATA": found,
-        "STYLE": _static("cage.css"),
-        "SCRIPT": _static("cage.js"),
+        "DATA": script_json(scene),
+        "STYLE": static("cage.css"),
+        "SCRIPT": static("cage.js"),
     }
-    return re.sub("@([A-Z]+)@", lambda mark: parts[mark[1]], _static("cage.html"))  # no mark inside a part
+    return re.sub("@([A-Z]+)@", lambda mark: parts[mark[1]], static("cage.html"))  # no mark inside a part
 
 
-def _static(name: str) -> str:
+def script_json(value: object) -> str:
+    """Return JSON to stand inside a script element, which no text in it may end."""
+    found = json.dumps(value, allow_nan=False, separators=(",", ":"))
+    for sign in "<>&\u2028\u2029":
+        found = found.replace(sign, f"\\u{ord(sign):04x}")
+    return found
+
+
+def static(name: str) -> str:
+    """Return a file of style, script or markup that is shipped with the program."""
     return files("separatrix.present").joinpath("static", name).read_text(encoding="utf-8")

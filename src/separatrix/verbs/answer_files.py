@@ -7,7 +7,6 @@ that names its file. An interrupted answer is read as any other.
 from __future__ import annotations
 
 import json
-import logging
 import re
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -24,7 +23,7 @@ from separatrix.ground.units import printable, shown
 from separatrix.verbs.verb import Tool, Verb
 
 if TYPE_CHECKING:
-    from separatrix.present.blocks import Page, Picture
+    from separatrix.present.blocks import Page
     from separatrix.study.study import Study
     from separatrix.verbs import Computed
 
@@ -87,8 +86,9 @@ def save_answer(
 ) -> None:
     """Write the files of an answer into a folder that exists, all or none.
 
-    Of an interrupted one, and of `check`, these are its document and its text. `page` is that of the document
-    if it has been made already; `pictures` says whether figures, and the page with them, are written, too.
+    Of an interrupted one, and of `check`, these are its document and its text; of a tool with `pictures`
+    these alone. `page` is that of the document if it has been made already; `pictures` says whether figures,
+    and the page with them, are written, too.
 
     Raises
     ------
@@ -100,49 +100,22 @@ def save_answer(
 
     page, name = page or page_of_document(asked, found), asked.name
     with staged(folder) as stage:
-        (stage / f"{name}.json").write_text(harmless(json_text(found) + "\n"), encoding="utf-8")
-        (stage / f"{name}.txt").write_text(harmless(text(page, Level.FULL)), encoding="utf-8")
+        if not asked.pictures:
+            (stage / f"{name}.json").write_text(harmless(json_text(found) + "\n"), encoding="utf-8")
+            (stage / f"{name}.txt").write_text(harmless(text(page, Level.FULL)), encoding="utf-8")
         if not asked.writes_data or found.get("complete") is False:
             return
-        from separatrix.present.dataset import dataset
+        from separatrix.present.html import write_drawn
         from separatrix.present.spreadsheet import spreadsheet
 
-        (stage / f"{name}.xlsx").write_bytes(spreadsheet(page))
         if pictures:
-            _draw(page, stage, name)
+            write_drawn(page, stage, "" if asked.pictures else name)
+        if not asked.pictures:
+            (stage / f"{name}.xlsx").write_bytes(spreadsheet(page))
         if isinstance(asked, Verb):
+            from separatrix.present.dataset import dataset
+
             dataset(found).to_netcdf(stage / f"{name}.nc", engine="h5netcdf")
-
-
-def save_pictures(folder: Path, page: Page) -> None:
-    """Write the pictures of a page alone."""
-    with staged(folder) as stage:
-        _draw(page, stage, "")
-
-
-def _draw(page: Page, stage: Path, name: str) -> None:
-    """Write each picture, drawn once, and with a name the page with them."""
-    from separatrix.present import draw
-    from separatrix.present.blocks import Level, Picture, View
-    from separatrix.present.html import html, picture_html
-
-    logging.getLogger("matplotlib").setLevel(logging.ERROR)  # its remarks on fonts
-    drawn: dict[str, str] = {}
-
-    def picture(one: Picture) -> str:
-        if one.name not in drawn:
-            drawing = draw.save(one.figure(), stage / f"{one.name}.png", stage / f"{one.name}.svg")
-            drawn[one.name] = picture_html(one, drawing)
-        return drawn[one.name]
-
-    for one in page.blocks:
-        if isinstance(one, View):
-            (stage / f"{one.name}.html").write_text(one.html(), encoding="utf-8")
-        elif isinstance(one, Picture):
-            picture(one)
-    if name:
-        level = Level.REPORT | Level.FULL
-        (stage / f"{name}.html").write_text(html(page, level=level, picture=picture), encoding="utf-8")
 
 
 # What is read back.
