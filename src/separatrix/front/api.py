@@ -25,10 +25,11 @@ from separatrix.verbs.answer_files import (
     refusing_damage,
 )
 from separatrix.verbs.compare import compared
+from separatrix.verbs.map import X, Y
 from separatrix.verbs.materials import LIST, SHOW
 from separatrix.verbs.report import Report, report_of_study
 from separatrix.verdict.long_jobs import Interrupted, Progress
-from separatrix.verdict.parameter_axes import DEFAULT_X, DEFAULT_Y, Case
+from separatrix.verdict.parameter_axes import Case
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -218,8 +219,8 @@ def stability(study: Asked, **how: Unpack[Runs]) -> Answer[of_cage.StabilityAnsw
 
 def map(
     study: Asked,
-    x: str = DEFAULT_X,
-    y: str = DEFAULT_Y,
+    x: str = X,
+    y: str = Y,
     *,
     points: int = 100,
     runs: int = 16,
