@@ -54,7 +54,7 @@ def page(answer: Part) -> Page:
 
 
 def balls(answer: Part) -> Table:
-    """Return a row for each ball, numbered from 1, or one where all are alike.
+    """Return a row for each ball, numbered from 1, or one where all are alike to the digits shown.
 
     A contact angle is absent where the ball does not touch this race.
     """
@@ -62,7 +62,8 @@ def balls(answer: Part) -> Table:
     def touching(race: str) -> Callable[[Part], Part | None]:
         return lambda ball: ball if getattr(ball, f"{race}_contact") else None
 
-    alike = are_alike(answer)
+    carried = ("load_inner", "load_outer", "contact_angle_inner", "contact_angle_outer", "orbital_speed")
+    alike = len({tuple(show(ball, name) for name in carried) for ball in answer.balls}) == 1
     number = text_column("ball", lambda ball: f"all {len(answer.balls)}" if alike else str(ball.ball + 1))
     angles = [column(f"contact_angle_{race}", of=touching(race)) for race in ("inner", "outer")]
     ratios = ("spin_roll_ratio_inner", "spin_roll_ratio_outer")
@@ -70,12 +71,6 @@ def balls(answer: Part) -> Table:
     place = [] if alike else [column("azimuth")]
     columns = (number, *place, *angles, *map(column, names))
     return Table("balls", columns, tuple(answer.balls[:1] if alike else answer.balls))
-
-
-def are_alike(answer: Part) -> bool:
-    """Whether every ball carries the same to the digits shown."""
-    names = ("load_inner", "load_outer", "contact_angle_inner", "contact_angle_outer", "orbital_speed")
-    return len({tuple(show(ball, name) for name in names) for ball in answer.balls}) == 1
 
 
 VERB = Verb(name="bearing", compute=later("chain_answers", "bearing_answer"), page=page)

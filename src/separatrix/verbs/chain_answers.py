@@ -180,12 +180,10 @@ def chain_node(found: Solution) -> Node:
     return shape(found.restitution) | more
 
 
-RETURNED = ("impact_speed", "effective_restitution_factor")
-
-
 @shape.register
 def _(found: RestitutionAnswer) -> Node:
-    node = chain_node(found.solution) | fields_of(found, *RETURNED, "film_thickness_here", "lubrication")
+    own = ("impact_speed", "effective_restitution_factor", "film_thickness_here", "lubrication")
+    node = chain_node(found.solution) | fields_of(found, *own)
     reason = Leaf("The study names no film material.")
     return node if found.lubrication else node | {"lubrication_reason": reason}
 

@@ -218,7 +218,9 @@ def compared(
     for name, one in zip(names, pair, strict=True):
         with refusing_damage(name):
             places.append(results(part_of(one), environment))
-            inputs.append(inputs_of_answer(one))
+            question = ((one.get("provenance") or {}).get("command") or {}).get("question") or {}
+            options = {f"--{key}": (value, None) for key, value in question.items()}
+            inputs.append(dict(inputs_of_study(one["study"])) | options)
         if not inputs[-1]:
             raise InputError(name, "contains a study that separatrix did not write", cure=AGAIN)
         known = {"path": name, "title": printable(one["title"], 200), "seed": one["seed"]}
@@ -241,13 +243,6 @@ def compared(
         "left_out": max(0, len(rows) - MOST_ROWS),
         "also": shared[1:],
     }
-
-
-def inputs_of_answer(one: Document) -> dict[str, tuple[object, str | None]]:
-    """Return the inputs of an answer and the options of its command, each with its unit."""
-    question = ((one.get("provenance") or {}).get("command") or {}).get("question") or {}
-    options = {f"--{name}": (value, None) for name, value in question.items()}
-    return dict(inputs_of_study(one["study"])) | options
 
 
 # --- the page -----------------------------------------------------------------------------------

@@ -60,10 +60,14 @@ def page(answer: Part) -> Page:
 
 def verdicts(rows: Sequence[Part]) -> list[Block]:
     """Return friction, P(stable), verdict and motion of each candidate."""
+
+    def marks(row: Part) -> str:
+        return GUESS * bool(row.get("friction_scatter_assumed")) + MARK * bool(row.extrapolation)
+
     runs = "from the worst initial disturbance; fewer where the verdict was plain before"
     columns = (
         text_column("material", lambda row: row.name),
-        column("friction", head="friction of a new cage", mark=friction_mark),
+        column("friction", head="friction of a new cage", mark=marks),
         column("probability_stable", of=judged),
         text_column("verdict", verdict),
         of.motion_column(),
@@ -71,11 +75,6 @@ def verdicts(rows: Sequence[Part]) -> list[Block]:
         replace(column("runs", of=judged), meaning=runs),
     )
     return [Table("verdicts", columns, tuple(rows)), Note(explained(columns), "legend", Level.LONG)]
-
-
-def friction_mark(row: Part) -> str:
-    """Return the marks beside a friction."""
-    return GUESS * bool(row.get("friction_scatter_assumed")) + MARK * bool(row.extrapolation)
 
 
 def footnotes(answer: Part, own: Sequence[Part]) -> Iterator[Note]:

@@ -58,9 +58,11 @@ def page(answer: Part) -> Page:
 
 def run_facts(answer: Part) -> Facts:
     """Return what a run started from, and by what part it was judged."""
-    cage, damping = answer.values["study"]["cage"], None
+    cage, damping = answer.cage, None
+    land = fill(cage, f"{cage.guidance} land {{land_clearance}} in diameter") if has_land(cage) else "no land"
+    axial = fill(cage, ", {axial_half_play} along the axis") if "axial_half_play" in cage else ""
     if "given_restitution_factor" in answer:
-        damping = show(answer.cage, "race_damping") if "race_damping" in answer.cage else "infinite"
+        damping = show(cage, "race_damping") if "race_damping" in cage else "infinite"
         damping += fill(answer, ", for a restitution factor of {given_restitution_factor}, not the study's")
     judged = "{judged_from} to {followed}; the run has {run_length}"
     if answer.followed >= answer.run_length:  # which ends with its last sample
@@ -68,20 +70,13 @@ def run_facts(answer: Part) -> Facts:
     return facts(
         ("Operation", "; ".join(figure_heading(answer)[1:])),
         ("Initial disturbance", fill(answer, f"{{kick}}; run {answer.run} of seed {answer.seed}")),
-        ("Pocket friction", pocket_friction(answer) or show(answer.cage, "ball_cage_friction")),
-        ("Ball", cage["ball"]["value"]),
+        ("Pocket friction", pocket_friction(answer) or show(cage, "ball_cage_friction")),
+        ("Ball", answer.values["study"]["cage"]["ball"]["value"]),
         ("Race damping", damping),
-        ("Clearance", _clearance(answer)),
+        ("Clearance", f"{land}; pockets {show(answer.chain, 'half_play')} each way{axial}"),
         ("Judged", fill(answer, judged)),
         ("Energy balance", fill(answer, "closes to {energy_imbalance} of the work done")),
     )
-
-
-def _clearance(answer: Part) -> str:
-    cage = answer.cage
-    land = fill(cage, f"{cage.guidance} land {{land_clearance}} in diameter") if has_land(cage) else "no land"
-    axial = fill(cage, ", {axial_half_play} along the axis") if "axial_half_play" in cage else ""
-    return f"{land}; pockets {show(answer.chain, 'half_play')} each way{axial}"
 
 
 def has_land(cage: Part) -> bool:
@@ -101,12 +96,15 @@ def motion_facts(answer: Part) -> Facts:
     if answer.force_exceeds_races:
         pocket = "above what the races hold, {force_limit}: beyond it this model of a ball has no meaning "
         pocket += "(`[cage] ball = 'free'` has)"
+    tilt = "{largest_tilt} at most; without a steady phase to the offset"
+    if "tilt_phase" in answer and (answer.tilt_coherence or 0.0) >= STEADY:
+        tilt = "{largest_tilt} at most; {tilt_phase} ahead of the offset (0: a forward cone)"
     offset = "{largest_offset} at most; mean {mean_offset}, standard deviation {offset_spread} (0: a circle)"
     law = "; by the linear law {drift_rate_law}" if answer.drift_rate_law else ""
     return facts(
         ("Offset", fill(answer, offset)),
         ("Drift rate", fill(answer, "{drift_rate}" + law)),
-        ("Tilt", _tilt(answer)),
+        ("Tilt", fill(answer, tilt) if "largest_tilt" in answer else None),
         ("Axial place", fill(answer, "{axial_low} to {axial_high}") if "axial_low" in answer else None),
         ("Whirl", fill(answer, whirl)),
         ("Cage slip", fill(answer, slip)),
@@ -144,15 +142,6 @@ def sign_blocks(answer: Part) -> list[Block]:
         Note(SIGNS, level=Level.LONG),
         *heat_blocks(answer.get("heat")),
     ]
-
-
-def _tilt(answer: Part) -> str | None:
-    if "largest_tilt" not in answer:
-        return None
-    cone = "without a steady phase to the offset"
-    if "tilt_phase" in answer and (answer.tilt_coherence or 0.0) >= STEADY:
-        cone = "{tilt_phase} ahead of the offset (0: a forward cone)"
-    return fill(answer, f"{{largest_tilt}} at most; {cone}")
 
 
 POCKET = ("pocket_angle", "half_play", "pocket_impacts", "impacts_per_turn", "pocket_rubbing_power")

@@ -248,15 +248,11 @@ def _worn(tests: Sequence[Part]) -> Iterator[str]:
         if len(worn) == 1:
             yield fill(worn[0], f"{words} (standard error {{wear_error}}).")
         else:
-            times = math.exp(_next_test(len(logs)) * stdev(logs))
+            from scipy.special import stdtrit
+
+            count = len(logs)  # prediction interval of another test (Student)
+            times = math.exp(float(stdtrit(count - 1, 0.975)) * math.sqrt(1.0 + 1.0 / count) * stdev(logs))
             yield f"{words}, a factor of {times:.2g} either way for 95 % of single tests ({len(worn)} tests)."
-
-
-def _next_test(count: int) -> float:
-    """Half-width of the 95 % prediction interval of another test, over the standard deviation (Student)."""
-    from scipy.special import stdtrit
-
-    return float(stdtrit(count - 1, 0.975)) * math.sqrt(1.0 + 1.0 / count)
 
 
 def _summary(test: Part) -> str:

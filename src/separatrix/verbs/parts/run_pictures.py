@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicHermiteSpline
 
 from separatrix.ground.document import Part
-from separatrix.ground.units import Array, Hertz, Metre
+from separatrix.ground.units import Array, Metre
 from separatrix.present import figure as fig
 from separatrix.present.quantity_text import axis, show
 from separatrix.present.view import AROUND, array, land_boundary, land_heights, whirl_spectrum
@@ -55,13 +55,6 @@ def smooth_path(answer: Part) -> Array:
     places = np.linspace(0, time.size - 1, FINE * (time.size - 1) + 1)
     found = CubicHermiteSpline(time, position, velocity)(np.interp(places, np.arange(time.size), time))
     return np.asarray(found)
-
-
-def spectrum_reach(answer: Part) -> Hertz:
-    """Return the frequency up to which a picture of the spectrum must go [Hz]."""
-    frequency, share = whirl_spectrum(answer)
-    shown = np.abs(frequency[share > PRESENT])
-    return float(1.3 * shown.max(initial=0.0)) or float(np.abs(frequency).max()) or 1.0
 
 
 # The panels.
@@ -194,7 +187,9 @@ def thinned(values: Array, most: int = SHOWN) -> NDArray[np.intp]:
 
 def spectrum(answer: Part) -> fig.Panel:
     """Return the two-sided spectrum of the centre's velocity; forward whirl turns as the balls do."""
-    most, (frequency, share) = spectrum_reach(answer), whirl_spectrum(answer)
+    frequency, share = whirl_spectrum(answer)
+    shown = np.abs(frequency[share > PRESENT])
+    most = float(1.3 * shown.max(initial=0.0)) or float(np.abs(frequency).max()) or 1.0
     seen = np.flatnonzero(np.abs(frequency) <= most)
     at = seen[thinned(share[seen])]
     marks: list[fig.Mark] = [fig.Across(at=0.0, colour=fig.GREY)]
