@@ -364,18 +364,14 @@ COMMANDS = {
 def _command(name: str) -> click.Command:
     """Return a command; only its own module is loaded."""
     about = COMMANDS[name]
-    if name in VERBS:
-        verb = verb_named(name)
+    if name in VERBS or name == "demo":
+        known = {"study": DEMO, "cluster": None} if name == "demo" else {}
+        verb = verb_named("rank" if known else name)
         after = beside("full", "json", "out", "quiet", "jobs", *["cluster"] * verb.keeps_runs)
-        takes = beside("study") | asked_of(verb) | after
-        return command(name, partial(run, verb), takes, about, verb.epilog)
+        takes = {**beside("study"), **asked_of(verb), **after}
+        open_ones = {option: one for option, one in takes.items() if option not in known}
+        return command(name, lambda given: run(verb, {**known, **given}), open_ones, about, verb.epilog)
     match name:
-        case "demo":
-            rank = verb_named("rank")
-            takes = asked_of(rank) | beside("full", "json", "out", "quiet", "jobs")
-            return command(
-                name, lambda given: run(rank, {**given, "study": DEMO, "cluster": None}), takes, about
-            )
         case "new":
             return command(name, _new, shown_options(NewOptions) | beside("json", "quiet"), about)
         case "report":

@@ -35,27 +35,22 @@ if TYPE_CHECKING:
 
 EPILOG = "Records of materials.toml in the current folder are read too, as they are for a study there."
 
-Kind = Annotated[
-    str | None, Option("bearing material, cage material, film, fluid, friction table, bearing.", "KIND")
-]
-Libraries = Annotated[tuple[str, ...], Option("A library file to read too; may be repeated.", "PATH")]
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ListOptions:
     """What `materials list` takes."""
 
-    kind: Kind = None
-    library: Libraries = ()
+    kind: Annotated[
+        str | None, Option("bearing material, cage material, film, fluid, friction table, bearing.", "KIND")
+    ] = None
+    library: Annotated[tuple[str, ...], Option("A library file to read too; may be repeated.", "PATH")] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ShowOptions:
+class ShowOptions(ListOptions):
     """What `materials show` takes."""
 
     name: Annotated[str, Option("A material, film, fluid, friction table or bearing.", "NAME", True)]
-    kind: Kind = None
-    library: Libraries = ()
 
 
 WORDS = {
@@ -73,26 +68,23 @@ MODULUS, RATIO = Quantity(label="", form=".3g"), Quantity(label="", form=".3f")
 
 
 # --- the records --------------------------------------------------------------------------------
-def read_library(libraries: Sequence[str | Path]) -> Library:
-    """Return the library: the shipped records, those of the current folder, and those of `libraries`."""
-    from separatrix.study.library import BESIDE, with_files
+def records_of(options: ListOptions) -> tuple[Library, list[Record]]:
+    """Return the library, and its records of the kind that is asked for; without one all of them.
+
+    It has the shipped records, those of the current folder, and those of the files that are named.
+    """
+    from separatrix.study.library import BESIDE, KINDS, with_files
 
     paths = [Path(BESIDE)] if Path(BESIDE).is_file() else []
-    for named in libraries:
+    for named in options.library:
         if not str(named) or not Path(named).exists():
             raise InputError("--library", "does not name a file", f'"{named}"')
         paths.append(Path(named))
-    return with_files(paths)
-
-
-def records_of(library: Library, kind: str | None) -> list[Record]:
-    """Return the records of a kind; without one all of them."""
-    from separatrix.study.library import KINDS
-
+    library, kind = with_files(paths), options.kind
     if kind not in (None, *KINDS):
         raise InputError("--kind", "is not a kind of record", shown(kind), nearest(str(kind), KINDS))
     kinds = KINDS if kind is None else (kind,)
-    return [one for each in kinds for one in library.records(each).values()]
+    return library, [one for each in kinds for one in library.records(each).values()]
 
 
 def records_named(library: Library, records: Sequence[Record], name: str) -> list[Record]:
@@ -108,15 +100,14 @@ def records_named(library: Library, records: Sequence[Record], name: str) -> lis
 
 def list_records(options: ListOptions) -> Document:
     """Every record of the library, or those of a kind."""
-    library = read_library(options.library)
-    records = [one.plain() for one in records_of(library, options.kind)]
-    return _document("list", libraries=[asdict(file) for file in library.files], materials=records)
+    library, records = records_of(options)
+    files = [asdict(file) for file in library.files]
+    return _document("list", libraries=files, materials=[one.plain() for one in records])
 
 
 def show_records(options: ShowOptions) -> Document:
     """Records of a name, whole."""
-    library = read_library(options.library)
-    found = records_named(library, records_of(library, options.kind), options.name)
+    found = records_named(*records_of(options), options.name)
     return _document("show", records=[one.plain() for one in found])
 
 
