@@ -105,7 +105,7 @@ def flag_of(name: str, note: Option) -> str:
 
 def asked_of(verb: Verb) -> Shown:
     """Return the options of a verb; where it moves a cage, the model too."""
-    return verb.shown_options() | beside(*("model",) * verb.moves_a_cage)
+    return shown_options(verb.options) | beside(*("model",) * verb.moves_a_cage)
 
 
 def _parameter(name: str, hint: Any, note: Option, default: Any) -> click.Parameter:
@@ -137,7 +137,7 @@ def command(
 
 def options_of(asked: Tool, given: Given) -> Any:
     """Return the options of a verb or tool from the values of its command."""
-    return asked.options(**{name: given[name] for name in asked.shown_options()})
+    return asked.options(**{name: given[name] for name in shown_options(asked.options)})
 
 
 # What a command does, from its question to its files.
@@ -204,7 +204,7 @@ def document_of(verb: Verb, study: Study, given: Given, folder: Path | None, opt
 def tool_command(tool: Tool, about: str) -> click.Command:
     """Return the command of a tool."""
     names = [*["out"] * bool(tool.folder), *["quiet"] * (tool.takes_time or bool(tool.folder))]
-    takes = tool.shown_options() | beside("full", "json", *names, *["jobs"] * tool.takes_time)
+    takes = shown_options(tool.options) | beside("full", "json", *names, *["jobs"] * tool.takes_time)
     return command(tool.name.split()[-1], partial(run_tool, tool), takes, about, tool.epilog)
 
 

@@ -226,11 +226,10 @@ def refusing_damage(where: str) -> Iterator[None]:
 def _read_report(path: Path) -> dict[str, Document]:
     where = path_text(path)
     match = REPORT.search(_bytes(path))
-    answers = _parsed(match[1], where) if match else {}
-    found = {verb: _checked(one, where, verb) for verb, one in answers.items()}
-    if not found:
+    answers = _parsed(match[1], where) if match else None
+    if not answers or not isinstance(answers, dict):
         raise InputError(where, "is not a report with its answers in it", cure=_MAKE)
-    return found
+    return {verb: _checked(one, where, verb) for verb, one in answers.items()}
 
 
 def _checked(found: object, where: str, named: str = "") -> Document:
@@ -266,15 +265,12 @@ def _bytes(path: Path) -> bytes:
         raise unreadable(where, error) from None
 
 
-def _parsed(raw: bytes, where: str) -> Document:
+def _parsed(raw: bytes, where: str) -> Any:
     try:
-        found = json.loads(raw.decode("utf-8"), parse_constant=_refuse_constant)
+        return json.loads(raw.decode("utf-8"), parse_constant=_refuse_constant)
     except (ValueError, RecursionError) as error:
         rule = "is not the document of an answer: no valid JSON"
         raise InputError(where, rule, printable(str(error), 80)) from None
-    if not isinstance(found, dict):
-        raise InputError(where, "is not the document of an answer", cure=_MAKE)
-    return found
 
 
 def _refuse_constant(name: str) -> NoReturn:

@@ -18,7 +18,7 @@ from separatrix.ground.units import printable, shown
 from separatrix.present.blocks import Block, Cell, Column, Note, Page, Table, text_column
 from separatrix.verbs import verb_named
 from separatrix.verbs.answer_files import is_number, read_answers, refusing_damage
-from separatrix.verbs.verb import Option, Tool, Verb
+from separatrix.verbs.verb import Option, Tool, Verb, shown_options
 
 if TYPE_CHECKING:
     from separatrix.verdict.long_jobs import Progress
@@ -81,7 +81,7 @@ def options_from(verb: Verb, given: object) -> Any:
 
     if not isinstance(given, dict):
         raise InputError("question", "must be the options of the verb", shown(given))
-    known, found = verb.shown_options(), {}
+    known, found = shown_options(verb.options), {}
     for name, value in given.items():
         option = f"--{printable(str(name), 40)}"
         if name not in known and value is None:  # of an earlier version, and not asked for

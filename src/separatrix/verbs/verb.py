@@ -98,10 +98,6 @@ class Tool:
     pictures: Callable[[Any], Path | None] | None = None
     ended: str = "no answer was given."
 
-    def shown_options(self) -> Shown:
-        """Return what a door shows of each option."""
-        return shown_options(self.options)
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Verb(Tool):
