@@ -111,11 +111,6 @@ class SimulationAnswer(OfCage):
     analysis: CourseAnalysis  # means, extremes, whirl and spectra
     signs: RigSigns | None  # what a test rig sees; null during a start-up
 
-    @property
-    def whirls(self) -> bool:
-        """Whether the motion lasts."""
-        return lasts(self.history)
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RankingAnswer(OfCage):
@@ -171,7 +166,8 @@ def _(found: SimulationAnswer) -> Node:
     """A motion that does not last has no whirl, a start-up no signs of a steady speed."""
     none = {"whirl_frequency": Leaf(None, "Hz"), "whirl_speed": Leaf(None, "m/s")}
     signs: Node = {} if found.signs else absent(RigSigns)
-    return _of_cage(found) | signs | ({} if found.whirls else {**none, "whirl_direction": Leaf(0)})
+    whirl = {} if lasts(found.history) else {**none, "whirl_direction": Leaf(0)}
+    return _of_cage(found) | signs | whirl
 
 
 @shape.register
@@ -196,7 +192,8 @@ def _(axis: MapAxis) -> Node:
 def _(row: Ranked | NotFinished | NotMeasured | UncertainMaterial | NotDrawn) -> Node:
     """The evidence on the level of the row; a row that lacks something has the keys of a whole one."""
     is_ranked = not isinstance(row, UncertainMaterial | NotDrawn)
-    evidence, over = (_evidence(getattr(row, name, None)) for name in ("judgement", "over_inputs"))
+    judged = (getattr(row, name, None) for name in ("judgement", "over_inputs"))
+    evidence, over = (absent(Judgement) if one is None else shape(one) for one in judged)
     whole = absent(Ranked if is_ranked else UncertainMaterial)
     node = evidence | whole | {"extrapolation": Leaf(())} | fields_of(row)
     del node["judgement"]
@@ -205,10 +202,6 @@ def _(row: Ranked | NotFinished | NotMeasured | UncertainMaterial | NotDrawn) ->
         names = ("verdict", "probability_stable", "probability_low", "probability_high", "runs")
         node |= {f"uncertain_{name}": over[name] for name in names}
     return node
-
-
-def _evidence(found: Judgement | None) -> Node:
-    return absent(Judgement) if found is None else shape(found)
 
 
 @shape.register

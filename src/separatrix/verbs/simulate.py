@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Annotated
 
 from separatrix.ground.document import Part
+from separatrix.present import view
 from separatrix.present.blocks import Block, Facts, Heading, Level, Note, Page, Picture, View, facts
 from separatrix.present.figure import Figure, Panel
 from separatrix.present.quantity_text import fill, places_table, show
@@ -50,7 +51,7 @@ def page(answer: Part) -> Page:
         *sign_blocks(answer),
         places_table("pockets", answer, *POCKET, level=Level.REPORT | Level.SHEET, caption=POCKETS),
         Picture("simulation", lambda: _figure(answer), CAPTION),
-        View("moving-cage", lambda: _view(answer), "The moving cage: play, turn, zoom."),
+        View("moving-cage", lambda: view.page(figure_heading(answer), view.scene(answer)), MOVING),
         *clearance_blocks(answer.chain.get("clearances")),
         Note(SINGLE, "caveat"),
     )
@@ -148,6 +149,7 @@ POCKET = ("pocket_angle", "half_play", "pocket_impacts", "impacts_per_turn", "po
 POCKETS = "Each pocket over the whole run."
 
 
+MOVING = "The moving cage: play, turn, zoom."
 CAPTION = (
     "The run: path and whirl of the cage centre, its offset, the forces, in space the tilt of its axis; the "
     "judged part is shaded."
@@ -164,12 +166,6 @@ def _figure(answer: Part) -> Figure:
     ]
     rows += [(panels.tilt(answer),)] if "lean" in answer else []
     return figure(answer, *rows, height=2.2)
-
-
-def _view(answer: Part) -> str:
-    from separatrix.present import view
-
-    return view.page(figure_heading(answer), view.scene(answer))
 
 
 VERB = Verb(
