@@ -18,7 +18,7 @@ from separatrix.present.blocks import (
     grouped,
     text_column,
 )
-from separatrix.present.quantity_text import all_numbers, column, fill, number_of, show
+from separatrix.present.quantity_text import all_numbers, begun, column, fill, number_of, show
 from separatrix.verbs.parts import verdict_blocks as of
 from separatrix.verbs.parts.answer_page import page_of
 from separatrix.verbs.parts.verdict_blocks import MARK, each_verdict, evidence_column, judged, verdict
@@ -45,7 +45,7 @@ def page(answer: Part) -> Page:
     return page_of(
         answer,
         Note(f"With the uncertain inputs drawn, in {answer.environment}: {each_verdict(rows)}.", "lead"),
-        Heading(answer.environment[:1].upper() + answer.environment[1:]),
+        Heading(begun(answer.environment)),
         *verdicts(rows),
         *footnotes(answer, rows),
         Heading("Main sources of uncertainty"),

@@ -11,7 +11,7 @@ from typing import Annotated, Any
 
 from separatrix.ground.document import Part
 from separatrix.present import quantity_text as q
-from separatrix.present.blocks import Column, Heading, Note, Page, Picture, Table, facts, text_column
+from separatrix.present.blocks import Column, Heading, Note, Page, Picture, Table, facts, grouped, text_column
 from separatrix.present.figure import CYCLE, GREY, MARKERS, Across, Axis, Figure, Mark, Panel
 from separatrix.verbs.parts.answer_page import figure, page_of
 from separatrix.verbs.verb import Option, Verb, later
@@ -167,9 +167,7 @@ def envelope_figure(answer: Part) -> Figure:
     Over the numbers of the cases where the first parameter makes no curve, as in a duty cycle.
     """
     first, *others = answer.parameters
-    curves: dict[str, list[Part]] = {}
-    for case in answer.cases:
-        curves.setdefault(values_words(others, case), []).append(case)
+    curves = grouped((values_words(others, case), case) for case in answer.cases)
     ways = [[case.get(first.name) for case in each] for each in curves.values()]
     name, is_line = first.name, all(way[1:] and all(a < b for a, b in pairwise(way)) for way in ways)
     if len(curves) > len(CYCLE) or not is_line or has(answer, "time_share"):

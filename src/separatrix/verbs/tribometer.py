@@ -35,7 +35,7 @@ from separatrix.present.blocks import (
     grouped,
     text_column,
 )
-from separatrix.present.quantity_text import column, fill, itself, known_columns, quantity
+from separatrix.present.quantity_text import begun, column, fill, itself, known_columns, quantity
 from separatrix.verbs.verb import Option, Tool
 
 if TYPE_CHECKING:
@@ -237,11 +237,8 @@ def _lead(answer: Part, tests: Sequence[Part]) -> Iterator[str]:
 
 def _worn(tests: Sequence[Part]) -> Iterator[str]:
     """Yield the wear coefficient of each material whose wear was logged."""
-    each: dict[str, list[Part]] = {}
-    for one in tests:
-        if "wear_coefficient" in one:
-            each.setdefault(one.conditions.get("material") or "the sample", []).append(one)
-    known = quantity("wear_coefficient")
+    known, worn_ones = quantity("wear_coefficient"), [one for one in tests if "wear_coefficient" in one]
+    each = grouped((one.conditions.get("material") or "the sample", one) for one in worn_ones)
     for name, worn in each.items():
         logs = [math.log(one.wear_coefficient) for one in worn]
         words = f"Wear coefficient of {name}: {alone(math.exp(fmean(logs)), known, 'm3/(N m)')}"
@@ -335,7 +332,7 @@ def _read(answer: Part) -> Iterator[Block]:
         )
         taken = tuple(one for one in file.columns if one.meaning or one.why != "not needed")
         yield Table(f"columns {number}", READ, taken)
-        yield from (Note(f"{one[:1].upper()}{one[1:]}.", "legend") for one in file.notes)
+        yield from (Note(f"{begun(one)}.", "legend") for one in file.notes)
 
 
 READ = (

@@ -5,7 +5,6 @@ from __future__ import annotations
 import hashlib
 import re
 import tomllib
-from collections import defaultdict
 from collections.abc import Iterator, Mapping, MutableMapping
 from contextlib import suppress
 from pathlib import Path, PurePosixPath
@@ -24,6 +23,7 @@ from separatrix.ground.files import is_inside, reading_only_in, write_new
 from separatrix.ground.reader import document_of
 from separatrix.ground.toml import MOST_BYTES, read_text
 from separatrix.ground.units import NUMBER, shown
+from separatrix.present import blocks
 from separatrix.study.reading import read_study
 from separatrix.study.study import ORDER, Study, shipped_studies
 from separatrix.study.template import StudyKey, remark_of, study_keys, template
@@ -135,10 +135,7 @@ def form(checked: Checked) -> Iterator[FormSection]:
     with suppress(ValueError, RecursionError):
         data = tomllib.loads(checked.text)
     for name in ("", *ORDER):
-        faults = defaultdict[str, list[str]](list)
-        for one in checked.faults:
-            if one.section == name:
-                faults[one.key].append(one.message)
+        faults = blocks.grouped((one.key, one.message) for one in checked.faults if one.section == name)
         values = (one.get(name) if name else one for one in (data, checked.inherited))
         given, inherited = (one if isinstance(one, Mapping) else {} for one in values)
         yield FormSection(name, remark_of(name), study_keys(name), given, inherited, faults)
