@@ -9,7 +9,7 @@ from operator import itemgetter
 from typing import Any
 
 from separatrix.ground.document import Part
-from separatrix.ground.units import format_quantity
+from separatrix.ground.quantity import Quantity, alone
 from separatrix.present.blocks import Block, Column, Heading, Level, Note, Page, Table, facts, text_column
 from separatrix.present.figure import Figure, Panel
 
@@ -20,8 +20,7 @@ INTERRUPTED = "Interrupted: only what was finished is here."
 
 PROPERTIES = ("elastic_modulus", "poisson_ratio", "density", "thermal_expansion")
 
-MICRO = (" um", " \N{MICRO SIGN}m")
-"""A micrometre as it is written, and as it is shown."""
+INPUT = Quantity(label="", digits=7)
 
 Json = Mapping[str, Any]
 
@@ -98,7 +97,7 @@ def value_words(value: Any, unit: str) -> str:
         return "-" if value is None else str(value)
     if unit in ("", "-"):
         return f"{value:g}"
-    return format_quantity(value, unit, 7).replace(*MICRO)
+    return alone(value, INPUT, unit)
 
 
 def _materials(study: Json, level: Level) -> list[Block]:
