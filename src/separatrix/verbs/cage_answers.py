@@ -6,11 +6,10 @@ The answer of `sweep` is a `Sweep`.
 from __future__ import annotations
 
 import contextlib
-import re
 from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
 from functools import partial
-from math import inf, isfinite, nan
+from math import inf, isfinite
 from typing import Any, TypeVar
 
 from separatrix.cage import CourseAnalysis, History, MovingCage, analyse, moving_cage, settings_for
@@ -19,17 +18,7 @@ from separatrix.cage.closed_forms import axial_half_play, drift_rate_law
 from separatrix.chain.solution import Solution, solve
 from separatrix.ground.errors import InputError, SeparatrixError
 from separatrix.ground.plain_data import Group, Leaf, Node, Table, absent, fields_of, shape
-from separatrix.ground.units import (
-    NUMBER,
-    MetrePerSecond,
-    Newton,
-    PerSecond,
-    Ratio,
-    Rows,
-    Watt,
-    parse,
-    printable,
-)
+from separatrix.ground.units import MetrePerSecond, Newton, PerSecond, Ratio, Rows, Watt, parse
 from separatrix.study.candidates import cage_candidate, reference_candidate, require_friction
 from separatrix.study.study import BallModel, Study
 from separatrix.verbs.chain_answers import chain_node, overdamped_notes
@@ -268,7 +257,10 @@ def map_answer(study: Study, options: MapOptions, runner: Runner) -> MapAnswer:
 def simulate_answer(study: Study, options: SimulateOptions) -> SimulationAnswer:
     """Follow one run of the ensemble, by default the first from the reference disturbance."""
     of.refuse_outside("--run", options.run, 0, of.MOST_RUNS)
-    given, eta = None if options.kick is None else of.kick_speed(options.kick), given_factor(options)
+    given, eta = None if options.kick is None else of.kick_speed(options.kick), None
+    if options.restitution_factor is not None:
+        eta = plain_number(str(options.restitution_factor).strip(), "--restitution-factor")
+        of.refuse_outside("--restitution-factor", eta, 0.0, 1.0)
     solution = solve(study)
     require_friction(study)
     cage = of.cage_of(solution)
@@ -315,17 +307,6 @@ def simulate_answer(study: Study, options: SimulateOptions) -> SimulationAnswer:
         signs=signs,
         notes=notes,
     )
-
-
-def given_factor(options: SimulateOptions) -> float | None:
-    """Return the restitution factor in place of the study's; None without one."""
-    if options.restitution_factor is None:
-        return None
-    text = str(options.restitution_factor).strip()
-    eta = float(text) if re.fullmatch(NUMBER, text) else nan
-    if not 0.0 <= eta <= 1.0:
-        raise InputError("--restitution-factor", "must be a number from 0 to 1", printable(text))
-    return eta
 
 
 def rank_answer(study: Study, _options: NoOptions, runner: Runner) -> RankingAnswer:
