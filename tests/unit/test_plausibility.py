@@ -11,7 +11,7 @@ from separatrix.chain.solution import solve
 from separatrix.study.cautions import beyond_bearings
 from separatrix.study.reading import read_study
 from separatrix.study.study import Operation, PocketShape, Study
-from separatrix.verbs.chain_answers import restitution_answer
+from separatrix.verbs import restitution
 from separatrix.verbs.verb import NoOptions
 from separatrix.verdict.beyond_models import (
     Moved,
@@ -85,13 +85,13 @@ def test_balls_that_the_inner_race_hardly_touches_skid():
 def test_an_overdamped_impact_is_called_so():
     """MoS2 on the shipped races: eta is 0, and the answer says what follows from it."""
     slippery = replace(SHIPPED, film=replace(SHIPPED.film, race_friction=0.02))
-    answer = restitution_answer(slippery, NoOptions())
+    answer = restitution.compute(slippery, NoOptions())
     (note,) = answer.notes
     assert re.match(r"eta = 0: .* C_mu = 87 N s/m is below .* = 137 N s/m; every", note)
     found = answer.solution.restitution
     assert found.race_damping < found.least_damping
-    assert restitution_answer(SHIPPED, NoOptions()).solution.restitution.restitution_factor > 0.0
-    assert restitution_answer(SHIPPED, NoOptions()).notes == ()
+    assert restitution.compute(SHIPPED, NoOptions()).solution.restitution.restitution_factor > 0.0
+    assert restitution.compute(SHIPPED, NoOptions()).notes == ()
 
 
 SOFT = replace(SHIPPED.ranking.candidates[0].material, compressive_strength=100e6)

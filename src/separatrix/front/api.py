@@ -25,11 +25,10 @@ from separatrix.verbs.answer_files import (
     refusing_damage,
 )
 from separatrix.verbs.compare import compared
-from separatrix.verbs.map import X, Y
 from separatrix.verbs.materials import LIST, SHOW
 from separatrix.verbs.report import Report, report_of_study
 from separatrix.verdict.long_jobs import Interrupted, Progress
-from separatrix.verdict.parameter_axes import Case
+from separatrix.verdict.parameter_axes import DEFAULT_X, DEFAULT_Y, Case
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -219,8 +218,8 @@ def stability(study: Asked, **how: Unpack[Runs]) -> Answer[of_cage.StabilityAnsw
 
 def map(
     study: Asked,
-    x: str = X,
-    y: str = Y,
+    x: str = DEFAULT_X,
+    y: str = DEFAULT_Y,
     *,
     points: int = 100,
     runs: int = 16,

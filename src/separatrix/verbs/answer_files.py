@@ -35,6 +35,10 @@ def document(verb: Verb, found: Computed) -> Document:
     warnings.
     """
     from separatrix.study.sources import provenance_of
+    from separatrix.verbs import chain_answers  # noqa: F401 - with the shapes of its records
+
+    if verb.moves_a_cage:
+        from separatrix.verbs import cage_answers  # noqa: F401
 
     left_out: list[str] = []
     study = found.study

@@ -3,18 +3,36 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from separatrix.ground.document import Part
 from separatrix.present.blocks import Equation, Heading, Page, Table, facts, text_column
 from separatrix.present.quantity_text import by_race, column, fact, fill, show
 from separatrix.verbs.parts.answer_page import page_of
 from separatrix.verbs.parts.chain_blocks import clearance_blocks, heat_blocks
-from separatrix.verbs.verb import Verb, later
+from separatrix.verbs.verb import NoOptions, Verb
+
+if TYPE_CHECKING:
+    from separatrix.chain.contacts import BearingState
+    from separatrix.study.study import Study
 
 CONTACT = (
     *("load", "contact_angle", "semi_major", "semi_minor", "max_pressure", "approach", "rolling_speed"),
     *("spin_roll_ratio", "creep_spin", "creep_curvature"),
 )
+
+
+def compute(study: Study, options: NoOptions) -> BearingState:  # noqa: ARG001
+    """Ball equilibrium and the contacts of the most loaded ball."""
+    from separatrix.chain.heat_balance import heat_balance
+    from separatrix.chain.solution import solve
+
+    solution = solve(study)
+    found, clearances = solution.bearing, solution.clearances
+    heat = heat_balance(study, found)
+    notes = (*solution.notes, *(heat.notes if heat else ()))
+    return replace(found, clearances=clearances, heat=heat, notes=notes)
 
 
 def page(answer: Part) -> Page:
@@ -73,4 +91,4 @@ def balls(answer: Part) -> Table:
     return Table("balls", columns, tuple(answer.balls[:1] if alike else answer.balls))
 
 
-VERB = Verb(name="bearing", compute=later("chain_answers", "bearing_answer"), page=page)
+VERB = Verb(name="bearing", compute=compute, page=page)

@@ -1,61 +1,28 @@
-"""Answers about a moving cage: their records, how these are arranged, and what each verb computes.
+"""Answers about a moving cage: their records, and how these are arranged.
 
 The answer of `sweep` is a `Sweep`.
 """
 
 from __future__ import annotations
 
-import contextlib
-from collections.abc import Callable
-from dataclasses import dataclass, fields, replace
-from functools import partial
-from math import inf, isfinite
-from typing import Any, TypeVar
+from dataclasses import dataclass, fields
+from math import inf
 
-from separatrix.cage import CourseAnalysis, History, MovingCage, analyse, moving_cage, settings_for
-from separatrix.cage import simulate as follow
-from separatrix.cage.closed_forms import axial_half_play, drift_rate_law
-from separatrix.chain.solution import Solution, solve
-from separatrix.ground.errors import InputError, SeparatrixError
+from separatrix.cage import CourseAnalysis, History, MovingCage
+from separatrix.cage.closed_forms import axial_half_play
+from separatrix.chain.solution import Solution
 from separatrix.ground.plain_data import Group, Leaf, Node, Table, absent, fields_of, shape
-from separatrix.ground.units import MetrePerSecond, Newton, PerSecond, Ratio, Rows, Watt, parse
-from separatrix.study.candidates import cage_candidate, reference_candidate, require_friction
-from separatrix.study.study import BallModel, Study
-from separatrix.verbs.chain_answers import chain_node, overdamped_notes
-from separatrix.verbs.life import Options as LifeOptions
-from separatrix.verbs.map import KICK, X, Y
-from separatrix.verbs.map import Options as MapOptions
-from separatrix.verbs.parts import cage_of_study as of
-from separatrix.verbs.sensitivity import Options as SensitivityOptions
-from separatrix.verbs.simulate import Options as SimulateOptions
-from separatrix.verbs.sweep import Options as SweepOptions
-from separatrix.verbs.verb import NoOptions
-from separatrix.verdict.beyond_models import Moved, beyond_motion
-from separatrix.verdict.crossing import cage_at
-from separatrix.verdict.judgement import Judgement, transmitted_force
-from separatrix.verdict.life_table import life
-from separatrix.verdict.long_jobs import Runner, made_into
-from separatrix.verdict.parameter_axes import MapAxis, asked_cases, checked_points, plain_number, read_axis
-from separatrix.verdict.ranking import rank
+from separatrix.ground.units import MetrePerSecond, Newton, PerSecond, Ratio, Rows, Watt
+from separatrix.verbs.chain_answers import chain_node
+from separatrix.verdict.judgement import Judgement
+from separatrix.verdict.parameter_axes import MapAxis
 from separatrix.verdict.ranking_records import NotFinished, NotMeasured, Ranked, Ranking
-from separatrix.verdict.reasons import force_limit, outcome_sentence
-from separatrix.verdict.rig_signs import SLOWER, Followed, RigSigns, lasts, rig_signs, slower
-from separatrix.verdict.stability_curve import StabilityCurve, stability_curve
-from separatrix.verdict.stability_map import MapQuestion, StabilityMap, stability_map, value_here
-from separatrix.verdict.swept_cases import Sweep, sweep
-from separatrix.verdict.uncertain_study import NotDrawn, UncertainMaterial, UncertainStudy, uncertain_study
+from separatrix.verdict.rig_signs import RigSigns, lasts
+from separatrix.verdict.stability_curve import StabilityCurve
+from separatrix.verdict.stability_map import StabilityMap
+from separatrix.verdict.swept_cases import Sweep
+from separatrix.verdict.uncertain_study import NotDrawn, UncertainMaterial, UncertainStudy
 from separatrix.verdict.wear_life import Life
-
-Found = TypeVar("Found")
-Kind = TypeVar("Kind", bound="OfCage")
-
-MOST_SHOWN = 20_000
-"""Samples of a simulated run, at most: every step of a short one."""
-
-REVOLUTIONS = 1e3, 1e12
-"""Least and most, up to which draws are followed."""
-
-MOST_SPEED = 1e6
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -205,153 +172,3 @@ def _(found: Sweep) -> Node:
         del case["values"]
         cases.append({"case": case.pop("case")} | values | case)
     return fields_of(found) | {"parameters": Table(named, Rows()), "cases": Table(cases, Rows("case"))}
-
-
-# What each verb computes.
-
-
-def answer_of_cage(
-    kind: type[Kind], name: str, solution: Solution, compute: Callable[[], Found], *notes: str
-) -> Kind:
-    """Return the answer about a cage whose field `name` a long job computes, also what an interrupt left.
-
-    Its notes are those of the result, of chain and cage, and `notes`.
-    """
-    cage = of.cage_of(solution)
-
-    def made(found: Any) -> Kind:
-        every = (*found.notes, *solution.notes, *cage.notes, *notes)
-        return kind(solution=solution, cage=cage, notes=every, **{name: found})
-
-    return made_into(made, compute)
-
-
-def stability_answer(study: Study, _: NoOptions, runner: Runner) -> StabilityAnswer:
-    """Critical friction against restitution factor."""
-    solution = solve(study)
-    cage, notes = of.cage_of(solution), of.extrapolation_notes(solution)
-    curve = partial(stability_curve, cage, study.stability, runner=runner)
-    return answer_of_cage(StabilityAnswer, "curve", solution, curve, *notes)
-
-
-def map_answer(study: Study, options: MapOptions, runner: Runner) -> MapAnswer:
-    """Verdicts in the plane of two parameters of a study."""
-    checked_points(options.points, "--points")
-    of.refuse_outside("--runs", options.runs, 1, of.MOST_RUNS)
-    axes = [read_axis(text, f"--{way}", options.points) for way, text in (("x", options.x), ("y", options.y))]
-    names = [axis.parameter for axis in axes]
-    if names[0] == names[1]:
-        cure = f"Without --x it is {X}, without --y {Y}."
-        raise InputError("--x and --y", "must be two parameters", got=f"{names[0]} twice", cure=cure)
-    if options.kick is not None and KICK in names:
-        raise InputError("--kick", "and an axis kick exclude each other", cure="Give one of the two.")
-    solution = solve(study)
-    usual = settings_for(study.stability, of.cage_of(solution)).middle_kick
-    speed = usual if options.kick is None else of.kick_speed(options.kick)
-    across, up = (replace(axis, here=value_here(solution, axis.parameter)) for axis in axes)
-    asked = MapQuestion(study=study, x=across, y=up, kick=speed, runs=options.runs)
-    notes = of.extrapolation_notes(solution)
-    return answer_of_cage(MapAnswer, "map", solution, lambda: stability_map(asked, runner=runner), *notes)
-
-
-def simulate_answer(study: Study, options: SimulateOptions) -> SimulationAnswer:
-    """Follow one run of the ensemble, by default the first from the reference disturbance."""
-    of.refuse_outside("--run", options.run, 0, of.MOST_RUNS)
-    given, eta = None if options.kick is None else of.kick_speed(options.kick), None
-    if options.restitution_factor is not None:
-        eta = plain_number(str(options.restitution_factor).strip(), "--restitution-factor")
-        of.refuse_outside("--restitution-factor", eta, 0.0, 1.0)
-    solution = solve(study)
-    require_friction(study)
-    cage = of.cage_of(solution)
-    settings = settings_for(study.stability, cage)
-    cage = cage if eta is None else cage_at(cage, eta, cage.ball_cage_friction)
-    speed = settings.middle_kick if given is None else given
-    asked = {name: getattr(settings, name) for name in ("seed", "duration", "ball_scatter")}
-
-    def followed(cage: MovingCage, kick: float, until: float | None = None) -> History:
-        return follow(cage, kick=kick, run=options.run, samples=MOST_SHOWN, until=until, **asked)
-
-    def grown(chain: Solution, cage: MovingCage, kick: float, found: History) -> Followed:
-        if not lasts(found):
-            return chain, cage, found
-        if found.largest_contact_force > force_limit(cage, transmitted_force(chain)):
-            cage = moving_cage(chain, cage.ball_cage_friction, BallModel.FREE)
-        return chain, cage, followed(cage, kick, settings.duration)
-
-    history, signs = followed(cage, speed), None
-    if eta is None and not study.operation.ramp_time:
-        other, less = slower(solution), SLOWER * speed
-        its = of.cage_of(other)
-        slow = grown(other, its, less, followed(its, less))
-        signs = rig_signs(grown(solution, cage, speed, history), slow)
-    found, made_of = force_limit(cage, transmitted_force(solution)), cage_candidate(study)
-    limit = found if isfinite(found) else None
-    heat = cage.land_friction * history.rubbing_force * history.rubbing_speed
-    name = made_of.name if made_of else "The cage"
-    moved = Moved(name, history.largest_contact_force, history.largest_offset)
-    notes = *solution.notes, *cage.notes, *of.extrapolation_notes(solution), *beyond_motion(solution, [moved])
-    return SimulationAnswer(
-        solution=solution,
-        cage=cage,
-        kick=speed,
-        run=options.run,
-        given_restitution_factor=eta,
-        outcome_sentence=outcome_sentence(history, limit=limit, rubbing_power=heat),
-        force_limit=limit,
-        force_exceeds_races=limit is not None and history.largest_contact_force > limit,
-        drift_rate_law=drift_rate_law(cage),
-        rubbing_power=heat,
-        history=history,
-        analysis=analyse(cage, history),
-        signs=signs,
-        notes=notes,
-    )
-
-
-def rank_answer(study: Study, _options: NoOptions, runner: Runner) -> RankingAnswer:
-    """Verdict, margin, rank and reason of each candidate material."""
-    solution = of.reference(study)
-    notes = overdamped_notes(solution.restitution)
-    return answer_of_cage(RankingAnswer, "ranking", solution, lambda: rank(study, runner=runner), *notes)
-
-
-def sensitivity_answer(study: Study, options: SensitivityOptions, runner: Runner) -> SensitivityAnswer:
-    """Draw bearings from the uncertain inputs and judge the cages of every candidate."""
-    of.refuse_samples(options.samples)
-    solution = of.reference(study)
-    of.drawn_bearings(solution)  # refused before anything is timed
-    drawn = partial(uncertain_study, study, options.samples, runner=runner)
-    return answer_of_cage(SensitivityAnswer, "uncertain", solution, drawn)
-
-
-def life_answer(study: Study, options: LifeOptions, runner: Runner) -> LifeAnswer:
-    """When the cage becomes unstable, over draws of what wears film and pockets."""
-    revolutions = plain_number(str(options.revolutions), "--revolutions")
-    of.refuse_outside("--revolutions", revolutions, *REVOLUTIONS)
-    of.refuse_samples(options.samples)
-    speed = options.accelerated
-    speed = parse(speed, "rad/s", "--accelerated") if isinstance(speed, str) else speed
-    if speed is not None and not 0.0 < abs(speed) < MOST_SPEED:
-        raise InputError("--accelerated", "must be above 0 and below 1e6 [rad/s]", f"{speed:g}")
-    found = life(
-        study,
-        revolutions=revolutions,
-        draws=options.samples,
-        cases=asked_cases((), options.cases) if options.cases else (),
-        accelerated=speed,
-        runner=runner,
-    )
-    solution = solve(study, reference_candidate(study, study.ranking) if study.ranking else None)
-    notes = (*found.notes, *of.extrapolation_notes(solution))
-    return LifeAnswer(solution=solution, cage=of.cage_of(solution), life=found, notes=notes)
-
-
-def sweep_answer(study: Study, options: SweepOptions, runner: Runner) -> Sweep:
-    """Chain and, if asked, verdict of many cases of a study."""
-    solution = solve(study)
-    with contextlib.suppress(SeparatrixError):
-        _ = solution.clearances  # for their notes
-    cases = asked_cases(options.vary, options.cases)
-    how: Any = {"runner": runner, "verdicts": options.verdicts, "margins": options.margins}
-    return made_into(lambda found: replace(found, notes=solution.notes), lambda: sweep(study, cases, **how))

@@ -1,45 +1,23 @@
-"""Answers of the chain: their records, how these are arranged, and what each verb computes.
+"""Answers of the chain: their records, with what belongs beside them, and how these are arranged.
 
 The answer of `bearing` is a `BearingState`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
-from math import asin
-from typing import TypeVar
+from dataclasses import dataclass
 
 import numpy as np
 
-from separatrix.chain.ball_mobility import LinearMobility, Mobility, SlipLaw, linear_mobility
+from separatrix.chain.ball_mobility import LinearMobility, Mobility
 from separatrix.chain.clearances import Clearances
-from separatrix.chain.contacts import BearingState, RaceContact, race_tracks
+from separatrix.chain.contacts import BearingState, RaceContact
 from separatrix.chain.equilibrium import Equilibrium
-from separatrix.chain.heat_balance import heat_balance
-from separatrix.chain.impact_restitution import LubricationCurve, Restitution
-from separatrix.chain.race_traction import beyond_strips, curves_by_ratio, shear, shown_curve
-from separatrix.chain.solution import Solution, solve
+from separatrix.chain.impact_restitution import LubricationCurve
+from separatrix.chain.solution import Solution
 from separatrix.chain.traction_curve import ShearField, TractionCurve
-from separatrix.ground.errors import SeparatrixError
 from separatrix.ground.plain_data import Group, Leaf, Node, Table, fields_of, shape
-from separatrix.ground.units import (
-    Kilogram,
-    Metre,
-    MetrePerSecond,
-    MetreRadianPerSecond,
-    Radian,
-    Ratio,
-    Rows,
-    format_quantity,
-)
-from separatrix.study.cage_body import cage_inertia
-from separatrix.study.pocket_shape import half_play, tilt
-from separatrix.study.study import Study
-from separatrix.verbs import refusals
-from separatrix.verbs.verb import NoOptions
-
-Link = TypeVar("Link")
+from separatrix.ground.units import Kilogram, Metre, MetrePerSecond, MetreRadianPerSecond, Radian, Ratio, Rows
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -200,110 +178,3 @@ def _(found: Mobility) -> Node:
 @shape.register
 def _(found: MobilityAnswer) -> Node:
     return shape(found.mobility) | fields_of(found, "rigid")
-
-
-# What each verb computes.
-
-
-def check_answer(study: Study, _options: NoOptions) -> CheckAnswer:
-    """What follows of a study in a second, the bearing at standstill, and what verbs will refuse."""
-    at, on = study.bearing, study.operation
-    still = replace(study, operation=replace(on, inner_speed=0.0, outer_speed=0.0))
-    static, static_reason = _tried(lambda: solve(still).bearing)
-    clearances, clearances_reason = _tried(lambda: solve(study).clearances)
-    return CheckAnswer(
-        refusals=tuple(Refusal(verb=verb, sentence=sentence) for verb, sentence in refusals(study)),
-        speed_parameter=(at.bore or at.pitch_diameter) * abs(on.inner_speed - on.outer_speed),
-        cage=_cage(study),
-        static=static,
-        static_reason=static_reason,
-        clearances=clearances,
-        clearances_reason=clearances_reason,
-        notes=tuple(note for one in (static, clearances) if one is not None for note in one.notes),
-    )
-
-
-def _tried(link: Callable[[], Link]) -> tuple[Link | None, str]:
-    """Return a link of the chain, or why it is refused."""
-    try:
-        return link(), ""
-    except SeparatrixError as error:
-        return None, str(error)
-
-
-def _cage(study: Study) -> CheckedCage | None:
-    cage = study.cage
-    if cage is None:
-        return None
-    gap = None if cage.land_clearance is None else cage.land_clearance / 2.0 - cage.land_out_of_round
-    mass, lean = cage_inertia(cage, study.bearing).mass, asin(tilt(cage)[1])
-    return CheckedCage(mass=mass, half_play=half_play(cage), lean=lean, land_gap=gap)
-
-
-def bearing_answer(study: Study, _options: NoOptions) -> BearingState:
-    """Ball equilibrium and the contacts of the most loaded ball."""
-    solution = solve(study)
-    found, clearances = solution.bearing, solution.clearances
-    heat = heat_balance(study, found)
-    notes = (*solution.notes, *(heat.notes if heat else ()))
-    return replace(found, clearances=clearances, heat=heat, notes=notes)
-
-
-def traction_answer(study: Study, _options: NoOptions) -> TractionAnswer:
-    """Traction curves, and by strips at other pivoting-to-rolling ratios."""
-    solution = solve(study)
-    _ = solution.slopes  # refused, and noted, as everything after them
-    tracks = race_tracks(study.bearing, study.film, solution.bearing)
-    inner, outer = (shown_curve(track, study.traction) for track in tracks)
-    return TractionAnswer(
-        race_friction=study.film.race_friction,
-        bearing=solution.bearing,
-        inner=inner,
-        outer=outer,
-        inner_others=curves_by_ratio(tracks[0], inner),
-        outer_others=curves_by_ratio(tracks[1], outer),
-        inner_shear=shear(tracks[0]),
-        outer_shear=shear(tracks[1]),
-        outside=tuple(beyond_strips(tracks, study.traction)),
-        notes=solution.notes,
-    )
-
-
-def overdamped_notes(found: Restitution) -> tuple[str, ...]:
-    """A sentence where the races brake a ball so much that an impact returns nothing."""
-    if found.restitution_factor != 0.0:
-        return ()
-    damping, least = (format_quantity(c, "N s/m", 3) for c in (found.race_damping, found.least_damping))
-    return (
-        f"eta = 0: impacts are overdamped, because C_mu = {damping} is below the limit sqrt(k_BC M_C)/2 "
-        f"= {least}; every material whose cage has this k_BC and M_C has its full threshold as margin. "
-        "C_mu falls as race friction falls and as speed rises. Test experience may differ: "
-        "docs/theory/restitution.md.",
-    )
-
-
-def restitution_answer(study: Study, _options: NoOptions) -> RestitutionAnswer:
-    """Restitution factor from the traction slopes, and what other films would give."""
-    from separatrix.cage.closed_forms import returned_share
-
-    solution = solve(study)
-    overdamped = overdamped_notes(solution.restitution)
-    _ = solution.clearances  # refused, and noted
-    stiffness, speed = solution.restitution.ball_cage_stiffness, solution.impact_speed
-    return RestitutionAnswer(
-        solution=solution,
-        impact_speed=speed,
-        effective_restitution_factor=returned_share(
-            solution.mobility.traction, solution.felt_mass, stiffness, speed
-        ),
-        film_thickness_here=study.film.thickness or 0.0,
-        lubrication=solution.lubrication,
-        notes=(*solution.notes, *overdamped),
-    )
-
-
-def mobility_answer(study: Study, _options: NoOptions) -> MobilityAnswer:
-    """How the races let a ball be pushed along its orbit."""
-    solution = solve(study)
-    found, rigid = solution.mobility, linear_mobility(solution.rolling, SlipLaw.RIGID)
-    return MobilityAnswer(mobility=found, rigid=rigid, notes=solution.notes)

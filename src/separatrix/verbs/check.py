@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from math import isclose
-from typing import Any
+from dataclasses import replace
+from math import asin, isclose
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from separatrix.ground.document import Part
 from separatrix.present.blocks import Heading, Level, Note, Page, facts, grouped
@@ -12,10 +12,62 @@ from separatrix.present.quantity_text import fact, fill, show
 from separatrix.verbs.parts.answer_page import APPENDIX, bearing_facts, entry_words, page_of
 from separatrix.verbs.parts.bearing_drawing import bearing_picture
 from separatrix.verbs.parts.chain_blocks import clearance_facts
-from separatrix.verbs.verb import Verb, later
+from separatrix.verbs.verb import NoOptions, Verb
 
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from separatrix.study.study import Study
+    from separatrix.verbs.chain_answers import CheckAnswer, CheckedCage
+
+Link = TypeVar("Link")
 SECTIONS = ("cage", "ranking")
 """Sections that a study may lack."""
+
+
+def compute(study: Study, _options: NoOptions) -> CheckAnswer:
+    """What follows of a study in a second, the bearing at standstill, and what verbs will refuse."""
+    from separatrix.chain.solution import solve
+    from separatrix.verbs import refusals
+    from separatrix.verbs.chain_answers import CheckAnswer, Refusal
+
+    at, on = study.bearing, study.operation
+    still = replace(study, operation=replace(on, inner_speed=0.0, outer_speed=0.0))
+    static, static_reason = _tried(lambda: solve(still).bearing)
+    clearances, clearances_reason = _tried(lambda: solve(study).clearances)
+    return CheckAnswer(
+        refusals=tuple(Refusal(verb=verb, sentence=sentence) for verb, sentence in refusals(study)),
+        speed_parameter=(at.bore or at.pitch_diameter) * abs(on.inner_speed - on.outer_speed),
+        cage=_cage(study),
+        static=static,
+        static_reason=static_reason,
+        clearances=clearances,
+        clearances_reason=clearances_reason,
+        notes=tuple(note for one in (static, clearances) if one is not None for note in one.notes),
+    )
+
+
+def _tried(link: Callable[[], Link]) -> tuple[Link | None, str]:
+    """Return a link of the chain, or why it is refused."""
+    from separatrix.ground.errors import SeparatrixError
+
+    try:
+        return link(), ""
+    except SeparatrixError as error:
+        return None, str(error)
+
+
+def _cage(study: Study) -> CheckedCage | None:
+    from separatrix.study.cage_body import cage_inertia
+    from separatrix.study.pocket_shape import half_play, tilt
+    from separatrix.verbs.chain_answers import CheckedCage
+
+    cage = study.cage
+    if cage is None:
+        return None
+    gap = None if cage.land_clearance is None else cage.land_clearance / 2.0 - cage.land_out_of_round
+    mass, lean = cage_inertia(cage, study.bearing).mass, asin(tilt(cage)[1])
+    return CheckedCage(mass=mass, half_play=half_play(cage), lean=lean, land_gap=gap)
 
 
 def page(answer: Part) -> Page:
@@ -112,4 +164,4 @@ def assumed(study: Mapping[str, Any]) -> list[tuple[str, str]]:
     return [(name, "; ".join(each)) for name, each in grouped(found).items()]
 
 
-VERB = Verb(name="check", compute=later("chain_answers", "check_answer"), page=page, writes_data=False)
+VERB = Verb(name="check", compute=compute, page=page, writes_data=False)

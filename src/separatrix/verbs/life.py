@@ -5,14 +5,26 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 from separatrix.ground.document import Part
+from separatrix.ground.errors import InputError
+from separatrix.ground.units import parse
 from separatrix.present.blocks import Heading, Level, Note, Page, Picture, Table, facts, text_column
 from separatrix.present.figure import BLUE, GREEN, VERMILION, Across, Band, Figure, Panel, Trace
 from separatrix.present.quantity_text import all_numbers, axis, column, fill, quantity, show
 from separatrix.verbs.parts.answer_page import figure, page_of
-from separatrix.verbs.verb import Option, Samples, Verb, later
+from separatrix.verbs.verb import Option, Samples, Verb
+
+if TYPE_CHECKING:
+    from separatrix.study.study import Study
+    from separatrix.verbs.cage_answers import LifeAnswer
+    from separatrix.verdict.long_jobs import Runner
+
+REVOLUTIONS = 1e3, 1e12
+"""Least and most, up to which draws are followed."""
+
+MOST_SPEED = 1e6
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -35,6 +47,35 @@ class Options:
             from separatrix.verdict.parameter_axes import asked_cases
 
             object.__setattr__(self, "cases", tuple(asked_cases((), self.cases)))
+
+
+def compute(study: Study, options: Options, runner: Runner) -> LifeAnswer:
+    """When the cage becomes unstable, over draws of what wears film and pockets."""
+    from separatrix.chain.solution import solve
+    from separatrix.study.candidates import reference_candidate
+    from separatrix.verbs.cage_answers import LifeAnswer
+    from separatrix.verbs.parts import cage_of_study as of
+    from separatrix.verdict.life_table import life
+    from separatrix.verdict.parameter_axes import asked_cases, plain_number
+
+    revolutions = plain_number(str(options.revolutions), "--revolutions")
+    of.refuse_outside("--revolutions", revolutions, *REVOLUTIONS)
+    of.refuse_samples(options.samples)
+    speed = options.accelerated
+    speed = parse(speed, "rad/s", "--accelerated") if isinstance(speed, str) else speed
+    if speed is not None and not 0.0 < abs(speed) < MOST_SPEED:
+        raise InputError("--accelerated", "must be above 0 and below 1e6 [rad/s]", f"{speed:g}")
+    found = life(
+        study,
+        revolutions=revolutions,
+        draws=options.samples,
+        cases=asked_cases((), options.cases) if options.cases else (),
+        accelerated=speed,
+        runner=runner,
+    )
+    solution = solve(study, reference_candidate(study, study.ranking) if study.ranking else None)
+    notes = (*found.notes, *of.extrapolation_notes(solution))
+    return LifeAnswer(solution=solution, cage=of.cage_of(solution), life=found, notes=notes)
 
 
 def page(answer: Part) -> Page:
@@ -184,7 +225,7 @@ def life_figure(answer: Part) -> Figure:
 
 VERB = Verb(
     name="life",
-    compute=later("cage_answers", "life_answer"),
+    compute=compute,
     page=page,
     epilog="Needs [wear]; wear coefficients of film and cage that it lacks are those of the library. A "
     "coefficient without a distribution or a range scatters by a factor of ten either way.",

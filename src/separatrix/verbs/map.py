@@ -6,7 +6,7 @@ import json
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from math import sqrt
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 from separatrix.ground.document import Document, Part
 from separatrix.ground.units import UNITS, format_number
@@ -15,7 +15,12 @@ from separatrix.present.blocks import Column, Heading, Note, Page, Picture, Tabl
 from separatrix.present.figure import BLACK, VERMILION, Cells, Figure, Hatched, Mark, Panel, Trace
 from separatrix.verbs.parts.answer_page import figure, is_chosen, page_of
 from separatrix.verbs.parts.verdict_blocks import linear_law, pocket_friction
-from separatrix.verbs.verb import Kick, Option, Verb, later
+from separatrix.verbs.verb import Kick, Option, Verb
+
+if TYPE_CHECKING:
+    from separatrix.study.study import Study
+    from separatrix.verbs.cage_answers import MapAnswer
+    from separatrix.verdict.long_jobs import Runner
 
 AXIS = "LOW..HIGH[unit][:N][:log]"
 X, Y = "restitution_factor=0..1", "ball_cage_friction=0..0.5"
@@ -34,6 +39,34 @@ class Options:
     points: Annotated[int, Option("Points per axis, unless the axis states a number.", "N")] = 100
     runs: Annotated[int, Option("Most runs of a point.", "N")] = 16
     kick: Kick = None
+
+
+def compute(study: Study, options: Options, runner: Runner) -> MapAnswer:
+    """Verdicts in the plane of two parameters of a study."""
+    from separatrix.cage import settings_for
+    from separatrix.chain.solution import solve
+    from separatrix.ground.errors import InputError
+    from separatrix.verbs.cage_answers import MapAnswer
+    from separatrix.verbs.parts import cage_of_study as of
+    from separatrix.verdict.parameter_axes import checked_points, read_axis
+    from separatrix.verdict.stability_map import MapQuestion, stability_map, value_here
+
+    checked_points(options.points, "--points")
+    of.refuse_outside("--runs", options.runs, 1, of.MOST_RUNS)
+    axes = [read_axis(text, f"--{way}", options.points) for way, text in (("x", options.x), ("y", options.y))]
+    names = [axis.parameter for axis in axes]
+    if names[0] == names[1]:
+        cure = f"Without --x it is {X}, without --y {Y}."
+        raise InputError("--x and --y", "must be two parameters", got=f"{names[0]} twice", cure=cure)
+    if options.kick is not None and KICK in names:
+        raise InputError("--kick", "and an axis kick exclude each other", cure="Give one of the two.")
+    solution = solve(study)
+    usual = settings_for(study.stability, of.cage_of(solution)).middle_kick
+    speed = usual if options.kick is None else of.kick_speed(options.kick)
+    across, up = (replace(axis, here=value_here(solution, axis.parameter)) for axis in axes)
+    asked = MapQuestion(study=study, x=across, y=up, kick=speed, runs=options.runs)
+    notes = of.extrapolation_notes(solution)
+    return of.answer_of_cage(MapAnswer, "map", solution, lambda: stability_map(asked, runner=runner), *notes)
 
 
 def page(answer: Part) -> Page:
@@ -241,7 +274,7 @@ def _overlays(answer: Part) -> Iterator[Mark]:
 
 VERB = Verb(
     name="map",
-    compute=later("cage_answers", "map_answer"),
+    compute=compute,
     page=page,
     options=Options,
     needs=("cage",),

@@ -2,18 +2,35 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from separatrix.ground.document import Part
 from separatrix.present.blocks import Equation, Heading, Note, Page, Picture, facts
 from separatrix.present.figure import BLUE, GREEN, GREY, VERMILION, Across, Figure, Mark, Panel, Trace
 from separatrix.present.quantity_text import axis, cell, fact, fill, named, places_table, show
 from separatrix.verbs.parts.answer_page import figure, page_of
-from separatrix.verbs.verb import Verb, later
+from separatrix.verbs.verb import NoOptions, Verb
+
+if TYPE_CHECKING:
+    from separatrix.study.study import Study
+    from separatrix.verbs.chain_answers import MobilityAnswer
 
 SMALL = (
     *("damping", "effective_mass", "damping_relaxed", "damping_locked", "groove_damping", "groove_stiffness"),
     *("pitch_angle", "pocket_friction_effect", "slip_speed_inner", "slip_speed_outer"),
 )
 PUSH = ("speed", "force_forward", "force_backward", "force_law")
+
+
+def compute(study: Study, _options: NoOptions) -> MobilityAnswer:
+    """How the races let a ball be pushed along its orbit."""
+    from separatrix.chain.ball_mobility import SlipLaw, linear_mobility
+    from separatrix.chain.solution import solve
+    from separatrix.verbs.chain_answers import MobilityAnswer
+
+    solution = solve(study)
+    found, rigid = solution.mobility, linear_mobility(solution.rolling, SlipLaw.RIGID)
+    return MobilityAnswer(mobility=found, rigid=rigid, notes=solution.notes)
 
 
 def page(answer: Part) -> Page:
@@ -75,7 +92,7 @@ def push_figure(answer: Part) -> Figure:
 
 VERB = Verb(
     name="mobility",
-    compute=later("chain_answers", "mobility_answer"),
+    compute=compute,
     page=page,
     epilog="Dampings and effective mass of the most loaded ball, its law of traction F(u) with the capacity "
     "of the races; rates and shares of its modes are in the JSON.",

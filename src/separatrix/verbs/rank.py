@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import cycle
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from separatrix.ground.document import Part
 from separatrix.present import figure as fig
@@ -27,7 +27,12 @@ from separatrix.verbs.parts import verdict_blocks as of
 from separatrix.verbs.parts.answer_page import figure, page_of
 from separatrix.verbs.parts.chain_blocks import basis_facts, restitution_blocks
 from separatrix.verbs.parts.verdict_blocks import MARK, by_verdict, has_safety, judged, verdict
-from separatrix.verbs.verb import Verb, later
+from separatrix.verbs.verb import NoOptions, Verb
+
+if TYPE_CHECKING:
+    from separatrix.study.study import Study
+    from separatrix.verbs.cage_answers import RankingAnswer
+    from separatrix.verdict.long_jobs import Runner
 
 BRIEF, REPORT, LONG = Level.BRIEF, Level.REPORT, Level.LONG
 EVIDENCE = (
@@ -40,6 +45,17 @@ SHORT = (
 )
 NAME = text_column("material", lambda row: row.name)
 POCKET = ("slip_speed", "impact_force", "pressure", "max_pressure", "contact_radius")
+
+
+def compute(study: Study, options: NoOptions, runner: Runner) -> RankingAnswer:  # noqa: ARG001
+    """Verdict, margin, rank and reason of each candidate material."""
+    from separatrix.verbs.cage_answers import RankingAnswer
+    from separatrix.verbs.parts.cage_of_study import answer_of_cage, overdamped_notes, reference
+    from separatrix.verdict.ranking import rank
+
+    solution = reference(study)
+    notes = overdamped_notes(solution.restitution)
+    return answer_of_cage(RankingAnswer, "ranking", solution, lambda: rank(study, runner=runner), *notes)
 
 
 def page(answer: Part) -> Page:
@@ -302,7 +318,7 @@ def overview(answer: Part, own: Part) -> fig.Figure:
 
 VERB = Verb(
     name="rank",
-    compute=later("cage_answers", "rank_answer"),
+    compute=compute,
     page=page,
     needs=("cage", "ranking"),
     moves_a_cage=True,

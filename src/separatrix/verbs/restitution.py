@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 from itertools import cycle
+from typing import TYPE_CHECKING
 
 from separatrix.ground.document import Part
 from separatrix.ground.units import format_number
@@ -13,10 +13,39 @@ from separatrix.present.figure import SEQUENCE, Figure, Mark, Panel, Trace
 from separatrix.present.quantity_text import axis, fill, number_of, place_column, quantity
 from separatrix.verbs.parts.answer_page import entry_words, figure, page_of
 from separatrix.verbs.parts.chain_blocks import clearance_blocks, restitution_blocks
-from separatrix.verbs.verb import Verb, later
+from separatrix.verbs.verb import NoOptions, Verb
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from separatrix.study.study import Study
+    from separatrix.verbs.chain_answers import RestitutionAnswer
 
 ETA = "restitution_factor"
 TITLE = "Restitution factor with other films: race dampings summed (Eq. 18)"
+
+
+def compute(study: Study, _options: NoOptions) -> RestitutionAnswer:
+    """Restitution factor from the traction slopes, and what other films would give."""
+    from separatrix.cage.closed_forms import returned_share
+    from separatrix.chain.solution import solve
+    from separatrix.verbs.chain_answers import RestitutionAnswer
+    from separatrix.verbs.parts.cage_of_study import overdamped_notes
+
+    solution = solve(study)
+    overdamped = overdamped_notes(solution.restitution)
+    _ = solution.clearances  # refused, and noted
+    stiffness, speed = solution.restitution.ball_cage_stiffness, solution.impact_speed
+    return RestitutionAnswer(
+        solution=solution,
+        impact_speed=speed,
+        effective_restitution_factor=returned_share(
+            solution.mobility.traction, solution.felt_mass, stiffness, speed
+        ),
+        film_thickness_here=study.film.thickness or 0.0,
+        lubrication=solution.lubrication,
+        notes=(*solution.notes, *overdamped),
+    )
 
 
 def page(answer: Part) -> Page:
@@ -90,10 +119,4 @@ def film_figure(answer: Part, curve: Part) -> Figure:
     return figure(answer, (panel,), height=3.0)
 
 
-VERB = Verb(
-    name="restitution",
-    compute=later("chain_answers", "restitution_answer"),
-    page=page,
-    needs=("cage",),
-    links=("rolling", "impact"),
-)
+VERB = Verb(name="restitution", compute=compute, page=page, needs=("cage",), links=("rolling", "impact"))

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
+from typing import TYPE_CHECKING
 
 from separatrix.ground.document import Part
 from separatrix.present.blocks import (
@@ -22,7 +24,12 @@ from separatrix.present.quantity_text import all_numbers, begun, column, fill, n
 from separatrix.verbs.parts import verdict_blocks as of
 from separatrix.verbs.parts.answer_page import page_of
 from separatrix.verbs.parts.verdict_blocks import MARK, each_verdict, evidence_column, judged, verdict
-from separatrix.verbs.verb import Samples, Verb, later
+from separatrix.verbs.verb import Samples, Verb
+
+if TYPE_CHECKING:
+    from separatrix.study.study import Study
+    from separatrix.verbs.cage_answers import SensitivityAnswer
+    from separatrix.verdict.long_jobs import Runner
 
 GUESS = "?"
 """After a friction whose scatter is a guess."""
@@ -36,6 +43,19 @@ class Options:
     """How many bearings are drawn."""
 
     samples: Samples = 512
+
+
+def compute(study: Study, options: Options, runner: Runner) -> SensitivityAnswer:
+    """Draw bearings from the uncertain inputs and judge the cages of every candidate."""
+    from separatrix.verbs.cage_answers import SensitivityAnswer
+    from separatrix.verbs.parts import cage_of_study as asked
+    from separatrix.verdict.uncertain_study import uncertain_study
+
+    asked.refuse_samples(options.samples)
+    solution = asked.reference(study)
+    asked.drawn_bearings(solution)  # refused before anything is timed
+    drawn = partial(uncertain_study, study, options.samples, runner=runner)
+    return asked.answer_of_cage(SensitivityAnswer, "uncertain", solution, drawn)
 
 
 def page(answer: Part) -> Page:
@@ -131,7 +151,7 @@ def is_friction(name: str) -> bool:
 
 VERB = Verb(
     name="sensitivity",
-    compute=later("cage_answers", "sensitivity_answer"),
+    compute=compute,
     page=page,
     epilog="Every number that the study writes with a distribution is drawn, and the frictions with "
     "their scatter: 9 % of the mean where none was measured, a guess.",

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated
+from math import isfinite
+from typing import TYPE_CHECKING, Annotated
 
 from separatrix.ground.document import Part
 from separatrix.present import view
@@ -13,7 +14,16 @@ from separatrix.present.quantity_text import fill, places_table, show
 from separatrix.verbs.parts.answer_page import figure, figure_heading, page_of
 from separatrix.verbs.parts.chain_blocks import clearance_blocks, heat_blocks
 from separatrix.verbs.parts.verdict_blocks import DIRECTIONS, pocket_friction, power_facts
-from separatrix.verbs.verb import Kick, Option, Verb, later
+from separatrix.verbs.verb import Kick, Option, Verb
+
+if TYPE_CHECKING:
+    from separatrix.cage import History, MovingCage
+    from separatrix.chain.solution import Solution
+    from separatrix.study.study import Study
+    from separatrix.verbs.cage_answers import SimulationAnswer
+
+MOST_SHOWN = 20_000
+"""Samples of a simulated run, at most: every step of a short one."""
 
 STEADY = 0.5
 """Coherence from which tilt and offset have a phase worth a number."""
@@ -37,6 +47,76 @@ class Options:
     kick: Kick = None
     run: Annotated[int, Option("Which run of the ensemble.", "N")] = 0
     restitution_factor: Annotated[str | float | None, Option(ETA, "ETA")] = None
+
+
+def compute(study: Study, options: Options) -> SimulationAnswer:
+    """Follow one run of the ensemble, by default the first from the reference disturbance."""
+    from separatrix.cage import analyse, moving_cage, settings_for
+    from separatrix.cage import simulate as follow
+    from separatrix.cage.closed_forms import drift_rate_law
+    from separatrix.chain.solution import solve
+    from separatrix.study.candidates import cage_candidate, require_friction
+    from separatrix.study.study import BallModel
+    from separatrix.verbs.cage_answers import SimulationAnswer
+    from separatrix.verbs.parts import cage_of_study as of
+    from separatrix.verdict.beyond_models import Moved, beyond_motion
+    from separatrix.verdict.crossing import cage_at
+    from separatrix.verdict.judgement import transmitted_force
+    from separatrix.verdict.parameter_axes import plain_number
+    from separatrix.verdict.reasons import force_limit, outcome_sentence
+    from separatrix.verdict.rig_signs import SLOWER, Followed, lasts, rig_signs, slower
+
+    of.refuse_outside("--run", options.run, 0, of.MOST_RUNS)
+    given, eta = None if options.kick is None else of.kick_speed(options.kick), None
+    if options.restitution_factor is not None:
+        eta = plain_number(str(options.restitution_factor).strip(), "--restitution-factor")
+        of.refuse_outside("--restitution-factor", eta, 0.0, 1.0)
+    solution = solve(study)
+    require_friction(study)
+    cage = of.cage_of(solution)
+    settings = settings_for(study.stability, cage)
+    cage = cage if eta is None else cage_at(cage, eta, cage.ball_cage_friction)
+    speed = settings.middle_kick if given is None else given
+    asked = {name: getattr(settings, name) for name in ("seed", "duration", "ball_scatter")}
+
+    def followed(cage: MovingCage, kick: float, until: float | None = None) -> History:
+        return follow(cage, kick=kick, run=options.run, samples=MOST_SHOWN, until=until, **asked)
+
+    def grown(chain: Solution, cage: MovingCage, kick: float, found: History) -> Followed:
+        if not lasts(found):
+            return chain, cage, found
+        if found.largest_contact_force > force_limit(cage, transmitted_force(chain)):
+            cage = moving_cage(chain, cage.ball_cage_friction, BallModel.FREE)
+        return chain, cage, followed(cage, kick, settings.duration)
+
+    history, signs = followed(cage, speed), None
+    if eta is None and not study.operation.ramp_time:
+        other, less = slower(solution), SLOWER * speed
+        its = of.cage_of(other)
+        slow = grown(other, its, less, followed(its, less))
+        signs = rig_signs(grown(solution, cage, speed, history), slow)
+    found, made_of = force_limit(cage, transmitted_force(solution)), cage_candidate(study)
+    limit = found if isfinite(found) else None
+    heat = cage.land_friction * history.rubbing_force * history.rubbing_speed
+    name = made_of.name if made_of else "The cage"
+    moved = Moved(name, history.largest_contact_force, history.largest_offset)
+    notes = *solution.notes, *cage.notes, *of.extrapolation_notes(solution), *beyond_motion(solution, [moved])
+    return SimulationAnswer(
+        solution=solution,
+        cage=cage,
+        kick=speed,
+        run=options.run,
+        given_restitution_factor=eta,
+        outcome_sentence=outcome_sentence(history, limit=limit, rubbing_power=heat),
+        force_limit=limit,
+        force_exceeds_races=limit is not None and history.largest_contact_force > limit,
+        drift_rate_law=drift_rate_law(cage),
+        rubbing_power=heat,
+        history=history,
+        analysis=analyse(cage, history),
+        signs=signs,
+        notes=notes,
+    )
 
 
 def page(answer: Part) -> Page:
@@ -170,7 +250,7 @@ def _figure(answer: Part) -> Figure:
 
 VERB = Verb(
     name="simulate",
-    compute=later("cage_answers", "simulate_answer"),
+    compute=compute,
     page=page,
     epilog="An unresolved run states its reason.",
     options=Options,

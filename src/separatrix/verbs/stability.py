@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import Any
+from functools import partial
+from typing import TYPE_CHECKING, Any
 
 from separatrix.ground.document import Part
 from separatrix.present.blocks import Heading, Level, Note, Page, Picture, facts
@@ -12,7 +12,27 @@ from separatrix.present.quantity_text import fill
 from separatrix.verbs.parts.answer_page import figure, page_of
 from separatrix.verbs.parts.chain_blocks import basis_facts
 from separatrix.verbs.parts.verdict_blocks import curve_blocks, curve_panel, pocket_friction
-from separatrix.verbs.verb import Verb, later
+from separatrix.verbs.verb import NoOptions, Verb
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from separatrix.study.study import Study
+    from separatrix.verbs.cage_answers import StabilityAnswer
+    from separatrix.verdict.long_jobs import Runner
+
+
+def compute(study: Study, _: NoOptions, runner: Runner) -> StabilityAnswer:
+    """Critical friction against restitution factor."""
+    from separatrix.chain.solution import solve
+    from separatrix.verbs.cage_answers import StabilityAnswer
+    from separatrix.verbs.parts.cage_of_study import answer_of_cage, cage_of, extrapolation_notes
+    from separatrix.verdict.stability_curve import stability_curve
+
+    solution = solve(study)
+    cage, notes = cage_of(solution), extrapolation_notes(solution)
+    curve = partial(stability_curve, cage, study.stability, runner=runner)
+    return answer_of_cage(StabilityAnswer, "curve", solution, curve, *notes)
 
 
 def page(answer: Part) -> Page:
@@ -87,7 +107,7 @@ def curve_figure(answer: Part) -> Figure:
 
 VERB = Verb(
     name="stability",
-    compute=later("cage_answers", "stability_answer"),
+    compute=compute,
     page=page,
     needs=("cage",),
     moves_a_cage=True,

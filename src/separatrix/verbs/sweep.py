@@ -2,19 +2,25 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise, product
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 from separatrix.ground.document import Part
 from separatrix.present import quantity_text as q
 from separatrix.present.blocks import Column, Heading, Note, Page, Picture, Table, facts, grouped, text_column
 from separatrix.present.figure import CYCLE, GREY, MARKERS, Across, Axis, Figure, Mark, Panel
 from separatrix.verbs.parts.answer_page import figure, page_of
-from separatrix.verbs.verb import Option, Verb, later
+from separatrix.verbs.verb import Option, Verb
+
+if TYPE_CHECKING:
+    from separatrix.study.study import Study
+    from separatrix.verdict.long_jobs import Runner
+    from separatrix.verdict.swept_cases import Sweep
 
 ETA = "restitution_factor"
 WORST = {ETA: "highest", **dict.fromkeys(("safety_factor", "margin", "probability_stable"), "lowest")}
@@ -46,6 +52,22 @@ class Options:
             from separatrix.verdict.parameter_axes import asked_cases
 
             object.__setattr__(self, "cases", tuple(asked_cases(self.vary, self.cases)))
+
+
+def compute(study: Study, options: Options, runner: Runner) -> Sweep:
+    """Chain and, if asked, verdict of many cases of a study."""
+    from separatrix.chain.solution import solve
+    from separatrix.ground.errors import SeparatrixError
+    from separatrix.verdict.long_jobs import made_into
+    from separatrix.verdict.parameter_axes import asked_cases
+    from separatrix.verdict.swept_cases import sweep
+
+    solution = solve(study)
+    with contextlib.suppress(SeparatrixError):
+        _ = solution.clearances  # for their notes
+    cases = asked_cases(options.vary, options.cases)
+    how: Any = {"runner": runner, "verdicts": options.verdicts, "margins": options.margins}
+    return made_into(lambda found: replace(found, notes=solution.notes), lambda: sweep(study, cases, **how))
 
 
 def page(answer: Part) -> Page:
@@ -222,7 +244,7 @@ def _upright(answer: Part, x: str) -> Iterator[Mark]:
 
 VERB = Verb(
     name="sweep",
-    compute=later("cage_answers", "sweep_answer"),
+    compute=compute,
     page=page,
     options=Options,
     moves_a_cage=True,

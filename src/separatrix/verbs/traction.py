@@ -3,16 +3,46 @@
 from __future__ import annotations
 
 from itertools import cycle
+from typing import TYPE_CHECKING
 
 from separatrix.ground.document import Part
 from separatrix.present import figure as fig
 from separatrix.present.blocks import Equation, Heading, Level, Note, Page, Picture, Table
 from separatrix.present.quantity_text import axis, by_race, fill, number_of, place_column, show
 from separatrix.verbs.parts.answer_page import figure, page_of
-from separatrix.verbs.verb import Verb, later
+from separatrix.verbs.verb import NoOptions, Verb
+
+if TYPE_CHECKING:
+    from separatrix.study.study import Study
+    from separatrix.verbs.chain_answers import TractionAnswer
 
 SLOPE = ("slope", "slope_error", "free_rolling_offset")
 CONTACT = ("load", "contact_angle", "spin_roll_ratio", "rolling_speed", *SLOPE)
+
+
+def compute(study: Study, _options: NoOptions) -> TractionAnswer:
+    """Traction curves, and by strips at other pivoting-to-rolling ratios."""
+    from separatrix.chain.contacts import race_tracks
+    from separatrix.chain.race_traction import beyond_strips, curves_by_ratio, shear, shown_curve
+    from separatrix.chain.solution import solve
+    from separatrix.verbs.chain_answers import TractionAnswer
+
+    solution = solve(study)
+    _ = solution.slopes  # refused, and noted, as everything after them
+    tracks = race_tracks(study.bearing, study.film, solution.bearing)
+    inner, outer = (shown_curve(track, study.traction) for track in tracks)
+    return TractionAnswer(
+        race_friction=study.film.race_friction,
+        bearing=solution.bearing,
+        inner=inner,
+        outer=outer,
+        inner_others=curves_by_ratio(tracks[0], inner),
+        outer_others=curves_by_ratio(tracks[1], outer),
+        inner_shear=shear(tracks[0]),
+        outer_shear=shear(tracks[1]),
+        outside=tuple(beyond_strips(tracks, study.traction)),
+        notes=solution.notes,
+    )
 
 
 def page(answer: Part) -> Page:
@@ -107,4 +137,4 @@ def shear_panel(answer: Part) -> fig.Panel:
     )
 
 
-VERB = Verb(name="traction", compute=later("chain_answers", "traction_answer"), page=page, links=("rolling",))
+VERB = Verb(name="traction", compute=compute, page=page, links=("rolling",))

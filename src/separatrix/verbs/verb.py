@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib
 from collections.abc import Callable
 from dataclasses import dataclass, fields
 from pathlib import Path
@@ -57,15 +56,6 @@ def kind_of(hint: Any) -> str:
     known = {bool: "flag", int: "number", Path: "file"}
     one = next((kind for type_, kind in known.items() if type_ in kinds), "text")
     return f"{one}s" if tuple in kinds else one
-
-
-def later(module: str, name: str) -> Callable[..., Any]:
-    """Return a function of a module of verbs that is loaded when it is called: pages need no physics."""
-
-    def call(*given: Any) -> Any:
-        return getattr(importlib.import_module(f"separatrix.verbs.{module}"), name)(*given)
-
-    return call
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -22,6 +22,7 @@ FEWEST, MOST = 2, 1000  # points of an axis
 POINTS = 10  # points of an axis of a sweep, unless it states a number
 MOST_CASES = 100_000
 TIME_SHARE = "time_share"  # beside the parameters of a case: how long it lasts
+DEFAULT_X, DEFAULT_Y = "restitution_factor=0..1", "ball_cage_friction=0..0.5"
 HIGHEST = {"restitution_factor": 1.0, "ball_cage_friction": 2.0}
 EXAMPLE = 'Write it like "cage.pocket_clearance=0.1..1mm" or "film.thickness=0.05..5um:40:log".'
 NOTHING = "Give --vary PARAM=LOW..HIGH, or a table of cases: --cases FILE.csv."

@@ -8,16 +8,24 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from separatrix.cage import MovingCage, moving_cage
 from separatrix.chain.contacts import race_tracks, require_rolling
 from separatrix.chain.exact.rolling import rolling_contact
+from separatrix.chain.impact_restitution import Restitution
 from separatrix.chain.race_traction import contact_problem
 from separatrix.chain.solution import Solution, solve
 from separatrix.ground.errors import InputError, SeparatrixError
-from separatrix.ground.units import MetrePerSecond, parse
+from separatrix.ground.units import MetrePerSecond, format_quantity, parse
 from separatrix.study import candidates
 from separatrix.study.study import LEAST_KICK, MOST_KICK, NO_KICK, Study, TractionModel, TractionSettings
+
+if TYPE_CHECKING:
+    from separatrix.verbs.cage_answers import OfCage
+
+Found = TypeVar("Found")
+Answer = TypeVar("Answer", bound="OfCage")
 
 MOST_RUNS = 1_000_000
 FEWEST_SAMPLES, MOST_SAMPLES = 64, 65_536
@@ -37,6 +45,24 @@ def reference(study: Study) -> Solution:
     asked = candidates.ranking_question(study)
     candidates.required_environment(study, asked)
     return solve(study, candidates.reference_candidate(study, asked))
+
+
+def answer_of_cage(
+    kind: type[Answer], name: str, solution: Solution, compute: Callable[[], Found], *notes: str
+) -> Answer:
+    """Return the answer about a cage whose field `name` a long job computes, also what an interrupt left.
+
+    Its notes are those of the result, of chain and cage, and `notes`.
+    """
+    from separatrix.verdict.long_jobs import made_into
+
+    cage = cage_of(solution)
+
+    def made(found: Any) -> Answer:
+        every = (*found.notes, *solution.notes, *cage.notes, *notes)
+        return kind(solution=solution, cage=cage, notes=every, **{name: found})
+
+    return made_into(made, compute)
 
 
 def refuse_outside(option: str, value: float, low: float, high: float) -> None:
@@ -74,6 +100,19 @@ def extrapolation_notes(solution: Solution) -> tuple[str, ...]:
             f"tests: {'; '.join(friction.extrapolation)}. [cage] ball_cage_friction overrides it.",
         )
     return ()
+
+
+def overdamped_notes(found: Restitution) -> tuple[str, ...]:
+    """A sentence where the races brake a ball so much that an impact returns nothing."""
+    if found.restitution_factor != 0.0:
+        return ()
+    damping, least = (format_quantity(c, "N s/m", 3) for c in (found.race_damping, found.least_damping))
+    return (
+        f"eta = 0: impacts are overdamped, because C_mu = {damping} is below the limit sqrt(k_BC M_C)/2 "
+        f"= {least}; every material whose cage has this k_BC and M_C has its full threshold as margin. "
+        "C_mu falls as race friction falls and as speed rises. Test experience may differ: "
+        "docs/theory/restitution.md.",
+    )
 
 
 # What is refused.
