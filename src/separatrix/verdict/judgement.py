@@ -220,7 +220,7 @@ def judge(cage: MovingCage, ensemble: Ensemble, *, capacity: Newton | None = Non
     def median(name: str) -> float:
         return float(np.median(getattr(ensemble, name)[at][shown]))
 
-    force, speed = ensemble.rubbing_force[at][shown], ensemble.rubbing_speed[at][shown]
+    rubbing = (ensemble.rubbing_force * ensemble.rubbing_speed)[at][shown]
     largest, limit = float(ensemble.largest_contact_force.max()), reasons.force_limit(cage, capacity)
     return Judgement(
         verdict=verdict,
@@ -238,7 +238,7 @@ def judge(cage: MovingCage, ensemble: Ensemble, *, capacity: Newton | None = Non
         largest_offset=float(ensemble.largest_offset.max()),
         mean_offset=median("mean_offset"),
         orbit_evenness=_evenness(ensemble, at, shown),
-        drift_rate=_median(ensemble.drift_rate[at][~whirling]),
+        drift_rate=reasons.median(ensemble.drift_rate[at][~whirling]),
         drift_rate_law=drift_rate_law(cage),
         largest_contact_force=largest,
         largest_land_force=float(ensemble.largest_land_force.max()),
@@ -254,9 +254,9 @@ def judge(cage: MovingCage, ensemble: Ensemble, *, capacity: Newton | None = Non
         end_energy=median("end_energy"),
         pocket_power=median("pocket_power"),
         land_power=median("land_power"),
-        rubbing_force=_median(force),
-        rubbing_speed=_median(speed),
-        rubbing_power=cage.land_friction * _median(force * speed),
+        rubbing_force=median("rubbing_force"),
+        rubbing_speed=median("rubbing_speed"),
+        rubbing_power=cage.land_friction * float(np.median(rubbing)),
         energy_imbalance=float(ensemble.energy_imbalance.max()),
         duration=ensemble.duration,
         longest_run=float(ensemble.followed.max()),
@@ -296,28 +296,19 @@ def wilson_interval(successes: int, count: int, normal: float = NORMAL_95) -> tu
     return min(low, p), max(high, p)  # rounding would leave none and all just outside
 
 
-def mean_half_width(values: Array) -> float | None:
-    """Half the width of Student's 95 % interval of the mean; None where fewer than two values tell none."""
-    count = values.size
-    if count < 2:
-        return None
-    return float(stdtrit(count - 1, 0.975) * np.std(values, ddof=1) / math.sqrt(count))
-
-
 def _growth(rates: Array) -> tuple[float, float | None, float | None]:
-    """Mean growth rate of some runs, and its interval."""
-    mean, half = float(rates.mean()), mean_half_width(rates)
-    return (mean, None, None) if half is None else (mean, mean - half, mean + half)
-
-
-def _median(values: Array) -> float:
-    return float(np.median(values)) if values.size else 0.0
+    """Mean growth rate of some runs, and Student's 95 % interval of it; fewer than two runs have none."""
+    mean, count = float(rates.mean()), rates.size
+    if count < 2:
+        return mean, None, None
+    half = float(stdtrit(count - 1, 0.975) * np.std(rates, ddof=1) / math.sqrt(count))
+    return mean, mean - half, mean + half
 
 
 def _evenness(ensemble: Ensemble, kick: int, shown: Array) -> Ratio:
     """Median of spread over mean of the offset, over the runs shown that left the axis at all."""
     mean, spread = ensemble.mean_offset[kick][shown], ensemble.offset_spread[kick][shown]
-    return _median(spread[mean > 0.0] / mean[mean > 0.0])
+    return reasons.median(spread[mean > 0.0] / mean[mean > 0.0])
 
 
 def _impact_shares(ensemble: Ensemble) -> tuple[Array, Ratio]:

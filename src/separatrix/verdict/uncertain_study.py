@@ -18,7 +18,7 @@ from separatrix.ground.errors import InputError
 from separatrix.ground.units import Array, MetrePerSecond, Ratio, Rows
 from separatrix.study.candidates import ranking_question, reference_candidate, required_environment
 from separatrix.study.distribution import described
-from separatrix.study.study import BallModel, Study
+from separatrix.study.study import Study
 from separatrix.verdict.beyond_models import (
     NOT_FINISHED,
     Moved,
@@ -233,7 +233,7 @@ def counted(bearings: DrawnBearings, case: Case, runner: Runner) -> Counted:
         ran.append(runs)
         return found
 
-    return judge_by_ball(bearings.central[case.candidate], bearings.central_friction(case), judged), ran[-1]
+    return judge_by_ball(bearings.central[case.candidate], bearings.stated[case].mean, judged), ran[-1]
 
 
 def counted_among(bearings: DrawnBearings, case: Case, runner: Runner, cage: MovingCage) -> Counted:
@@ -244,13 +244,12 @@ def counted_among(bearings: DrawnBearings, case: Case, runner: Runner, cage: Mov
     the kicks that are left.
     """
     capacity = transmitted_force(bearings.central[case.candidate])
-    ball = None if cage.free_ball is None else BallModel.FREE
     parts: list[Ensemble] = []
     left_out: list[KickCount] = []
     total, kicks = len(bearings.runs), list(bearings.kicks)
     for first in range(0, total, BLOCK):
         places = range(first, min(first + BLOCK, total))
-        parts.append(bearings.ensemble(case, kicks, places, runner, ball=ball))
+        parts.append(bearings.ensemble(case, kicks, places, runner, cage))
         found = joined(parts)
         judged = judge(cage, found, capacity=capacity)
         if is_plain(judged):
