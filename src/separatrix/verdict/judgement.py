@@ -196,17 +196,9 @@ def judge(cage: MovingCage, ensemble: Ensemble, *, capacity: Newton | None = Non
     settle or roll in their pockets, the lower end of that share's 95 % interval is above one half, and the
     cage neither drifts nor ends outside its pockets nor left its room nor, in any run, the range of numbers,
     nor does friction on the land keep it moving in more than a tenth of the runs from a kick. UNDECIDED
-    otherwise. The rule is ours; it asks more of a stable cage than of an unstable one.
-
-    Parameters
-    ----------
-    cage : MovingCage
-        Whose runs these are.
-    ensemble : Ensemble
-        The runs.
-    capacity : float, optional
-        Largest force that the races transmit to a ball, f_BT (Q_i + Q_o) [N]; by default that of its law of
-        traction.
+    otherwise. The rule is ours; it asks more of a stable cage than of an unstable one. `capacity` is the
+    largest force that the races transmit to a ball, f_BT (Q_i + Q_o) [N], by default that of its law of
+    traction.
     """
     counts = kick_counts(ensemble)
     verdict, because = decide(cage, ensemble, counts)
@@ -406,16 +398,7 @@ def judge_solution(solution: Solution, friction: Ratio, run: Callable[[MovingCag
     That is the one of the study, or one state until free balls have to be asked. The critical friction with
     one state is 0.74 to 1.00 of that among free balls (ten bearings, the worse of two speeds): its STABLE is
     safe, its UNSTABLE may be too early. They agree while the friction of a sustained whirl stays below a
-    quarter of what the races hold.
-
-    Parameters
-    ----------
-    solution : Solution
-        Of the chain.
-    friction : float
-        Ball on cage [-].
-    run : callable
-        Runs the ensemble of a cage, always with the same settings.
+    quarter of what the races hold. `run` makes the runs of a cage, always with the same settings.
     """
     capacity = transmitted_force(solution)
     return judge_by_ball(solution, friction, lambda cage: judge(cage, run(cage), capacity=capacity))

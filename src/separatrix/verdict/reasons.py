@@ -85,15 +85,7 @@ class CageMotion(Spelled):
 
 
 def cage_motion(ensemble: Ensemble, kick: int) -> CageMotion | None:
-    """Class of the motion that most runs from one kick end in; None if most are unresolved.
-
-    Parameters
-    ----------
-    ensemble : Ensemble
-        The runs.
-    kick : int
-        Place of the kick in the ensemble.
-    """
+    """Class of the motion that most runs from the kick at this place end in; None if most are unresolved."""
     outcome = ensemble.outcome[kick]
     counts = {one: int(np.count_nonzero(outcome == one)) for one in RunOutcome}
     unresolved, rolls = counts.pop(RunOutcome.UNRESOLVED), counts.pop(RunOutcome.ROLLS)

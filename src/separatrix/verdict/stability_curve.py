@@ -104,16 +104,9 @@ def critical_friction(
 ) -> CriticalFriction:
     """Friction at which half the runs whirl from the reference kick, and the band over all kicks.
 
-    Parameters
-    ----------
-    cage, settings
-        The friction of the cage is replaced, and its race damping unless `restitution_factor` is None.
-    restitution_factor : float or None
-        Nominal, of the whole cage mass [-]; None for the cage's own race damping.
-    runner : Runner, optional
-        Makes the runs.
-    band : bool
-        Whether the other kicks and the band are wanted; without it half the runs are enough.
+    The friction of the cage is replaced, and its race damping by that of a nominal restitution factor, of
+    the whole cage mass [-]; None keeps its own. Without the other kicks and the `band` half the runs are
+    enough.
     """
     settings, eta = settings_for(settings, cage), restitution_factor
     guess = 0.8 * linear_critical_friction(cage_at(cage, None if eta is None else min(eta, 0.9), 0.0))
