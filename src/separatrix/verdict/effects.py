@@ -38,12 +38,8 @@ class Change:
     values: Mapping[str, Any]
 
 
-def effects_on(solution: Solution, cage: MovingCage) -> dict[str, Change]:
-    """What the inputs of a study allow to put in or leave out, by name."""
-    return dict(_effects(solution, cage))
-
-
-def _effects(solution: Solution, cage: MovingCage) -> Iterator[tuple[str, Change]]:
+def effects_on(solution: Solution, cage: MovingCage) -> Iterator[tuple[str, Change]]:
+    """What the inputs of a study allow to put in or leave out, each with its name."""
     if 0.0 < 2.0 * cage.land_gap < cage.pocket_clearance:
         wide = WIDE * cage.pocket_clearance
         yield (

@@ -252,7 +252,7 @@ def _question(
         pockets=pockets,
         reference=reference,
         environment=required_environment(study, asked),
-        effects={} if is_paper else effects_on(cages[reference], moving_cage(cages[reference], 0.0)),
+        effects={} if is_paper else dict(effects_on(cages[reference], moving_cage(cages[reference], 0.0))),
         drawn=drawn,
         keys=keys,
         beside=[] if is_paper else sorted(own),
@@ -388,27 +388,26 @@ def _row(
     """One candidate, not yet ranked."""
     pocket = question.pockets[name]
     eta = question.cages[pocket].restitution.restitution_factor
-    row = NotFinished(
-        name=name,
-        friction=friction.mean,
-        friction_error=friction.error,
-        friction_deviation=friction.deviation,
-        friction_scatter_assumed=friction.assumed,
-        extrapolation=friction.extrapolation,
-        cage_mass=pocket.mass,
-        ball_cage_stiffness=pocket.stiffness,
-        pocket_clearance=pocket.clearance,
-        land_clearance=pocket.land or None,
-        restitution_factor=eta,
-        reason=NOT_FINISHED,
-    )
+    values: dict[str, Any] = {
+        "name": name,
+        "friction": friction.mean,
+        "friction_error": friction.error,
+        "friction_deviation": friction.deviation,
+        "friction_scatter_assumed": friction.assumed,
+        "extrapolation": friction.extrapolation,
+        "cage_mass": pocket.mass,
+        "ball_cage_stiffness": pocket.stiffness,
+        "pocket_clearance": pocket.clearance,
+        "land_clearance": pocket.land or None,
+        "restitution_factor": eta,
+    }
     judgement = found.get(Asked(pocket, friction.mean))
     if judgement is None:
-        return row
+        return NotFinished(**values, reason=NOT_FINISHED)
     if broken := not_finite(judgement):
-        return replace(row, reason=broken)
-    is_own = environment == question.environment
-    row = replace(row, judgement=judgement, over_inputs=found.get(Case(name)) if is_own else None)
+        return NotFinished(**values, reason=broken)
+    values["judgement"] = judgement
+    values["over_inputs"] = found.get(Case(name)) if environment == question.environment else None
     threshold = _threshold(question, found, pocket, friction)
     limit = _of_pocket(question, found, Limit, pocket)
     by_paper = Asked(pocket, friction.mean, True)
@@ -416,9 +415,9 @@ def _row(
     is_missing = papers is None and by_paper in question.beside
     if threshold is None or is_missing or (limit is None and not question.is_paper):
         missing = "threshold" if question.is_paper else "critical friction, or the paper's answer"
-        return replace(row, reason=f"{judgement.reason} Its {missing}: {NOT_FINISHED}.")
+        return NotFinished(**values, reason=f"{judgement.reason} Its {missing}: {NOT_FINISHED}.")
     return Ranked(
-        **{f.name: getattr(row, f.name) for f in fields(row) if f.name != "reason"},
+        **values,
         reason=reason(threshold, judgement) if question.is_paper else judgement.reason,
         restitution_threshold=threshold.value,
         restitution_threshold_low=threshold.low,
@@ -426,7 +425,7 @@ def _row(
         margin=threshold.value - eta,
         paper_verdict=None if papers is None else papers.verdict,
         paper_probability_stable=None if papers is None else papers.probability_stable,
-        **_safety(limit, friction, question.spreads.get(row.name, 0.0)),
+        **_safety(limit, friction, question.spreads.get(name, 0.0)),
     )
 
 
