@@ -21,7 +21,6 @@ import numpy as np
 from separatrix.cage.moving_cage import MovingCage
 from separatrix.cage.outcome import Cause, RunOutcome
 from separatrix.cage.rows import LANES
-from separatrix.chain.ball_traction import FreeBall, SlipField
 from separatrix.chain.impact_restitution import damping_for
 from separatrix.ground.units import Array, MetrePerSecond, Ratio
 from separatrix.study.study import StabilitySettings
@@ -81,19 +80,8 @@ def cage_at(cage: MovingCage, restitution_factor: Ratio | None, friction: Ratio)
         cage,
         race_damping=damping,
         traction=law and law.stiffened(ratio),
-        free_ball=ball and _stiffened(ball, ratio),
+        free_ball=ball and ball.stiffened(ratio),
     )
-
-
-def _stiffened(ball: FreeBall, ratio: Ratio) -> FreeBall:
-    """Return a free ball whose races reach the same tractions at slips this many times smaller."""
-
-    def race(one: SlipField) -> SlipField:
-        slips = ("slip", "pivoting", "heathcote", "elastic_slip")
-        return replace(one, **{name: getattr(one, name) / ratio for name in slips})
-
-    rate = ball.fastest_rate * ratio
-    return replace(ball, inner=race(ball.inner), outer=race(ball.outer), fastest_rate=rate)
 
 
 def responses(

@@ -169,18 +169,10 @@ def sample(
     *,
     frictions: Mapping[Case, Friction] | None = None,
 ) -> Draws:
-    """Draw the uncertain inputs of a study.
+    """Draw the uncertain inputs of a study, by default with the measured frictions that it states.
 
-    Parameters
-    ----------
-    study : Study
-        With distributions, or with candidates whose friction was measured.
-    samples : int
-        1 to `MOST_SAMPLES`, best a power of two. The first of more samples are the same as fewer samples.
-    seed : int, optional
-        Of the scrambling; without it the study's. The draws are the same on every machine.
-    frictions : mapping, optional
-        Measured friction of each case; by default as the study states it.
+    Best is a power of two. The first of more samples are the same as fewer samples, and the draws of a seed
+    of the scrambling, by default the study's, are the same on every machine.
 
     Raises
     ------

@@ -208,6 +208,9 @@ def judge(cage: MovingCage, ensemble: Ensemble, *, capacity: Newton | None = Non
     shown = np.ones_like(whirling) if motion is None else outcome == ENDS[motion]
     rate, rate_low, rate_high = _growth(ensemble.growth_rate[at])
     pockets, land = _impact_shares(ensemble)
+    low, high = ensemble.axial_low, ensemble.axial_high
+    mean, spread = ensemble.mean_offset[at][shown], ensemble.offset_spread[at][shown]
+    is_off = mean > 0.0  # runs that left the axis at all
 
     def median(name: str) -> float:
         return float(np.median(getattr(ensemble, name)[at][shown]))
@@ -229,7 +232,7 @@ def judge(cage: MovingCage, ensemble: Ensemble, *, capacity: Newton | None = Non
         growth_rate_high=rate_high,
         largest_offset=float(ensemble.largest_offset.max()),
         mean_offset=median("mean_offset"),
-        orbit_evenness=_evenness(ensemble, at, shown),
+        orbit_evenness=reasons.median(spread[is_off] / mean[is_off]),
         drift_rate=reasons.median(ensemble.drift_rate[at][~whirling]),
         drift_rate_law=drift_rate_law(cage),
         largest_contact_force=largest,
@@ -255,7 +258,7 @@ def judge(cage: MovingCage, ensemble: Ensemble, *, capacity: Newton | None = Non
         runs=ensemble.outcome.shape[1],
         impact_rate=median("strike_rate"),
         largest_tilt=None if ensemble.largest_tilt is None else float(ensemble.largest_tilt.max()),
-        axial_travel=_travel(ensemble),
+        axial_travel=None if low is None or high is None else float((high - low).max()),
         cone_ratio=None if ensemble.cone_speed is None else _whirl_ratio(cage, median("cone_speed")),
     )
 
@@ -268,13 +271,6 @@ ENDS = {
     CageMotion.ON_THE_LAND: RunOutcome.SETTLES,
 }
 """Outcome of the runs that end in a motion."""
-
-
-def _travel(ensemble: Ensemble) -> Metre | None:
-    """Largest way between the ends of the axial motion of a run; None in the plane."""
-    if ensemble.axial_high is None or ensemble.axial_low is None:
-        return None
-    return float((ensemble.axial_high - ensemble.axial_low).max())
 
 
 def wilson_interval(successes: int, count: int, normal: float = NORMAL_95) -> tuple[Ratio, Ratio]:
@@ -295,12 +291,6 @@ def _growth(rates: Array) -> tuple[float, float | None, float | None]:
         return mean, None, None
     half = float(stdtrit(count - 1, 0.975) * np.std(rates, ddof=1) / math.sqrt(count))
     return mean, mean - half, mean + half
-
-
-def _evenness(ensemble: Ensemble, kick: int, shown: Array) -> Ratio:
-    """Median of spread over mean of the offset, over the runs shown that left the axis at all."""
-    mean, spread = ensemble.mean_offset[kick][shown], ensemble.offset_spread[kick][shown]
-    return reasons.median(spread[mean > 0.0] / mean[mean > 0.0])
 
 
 def _impact_shares(ensemble: Ensemble) -> tuple[Array, Ratio]:

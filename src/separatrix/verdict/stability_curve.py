@@ -228,7 +228,7 @@ def curve_of_points(
 ) -> StabilityCurve:
     """Return the curve of the finished points, rising restitution factors first, with its limits."""
     settings = settings_for(settings, cage)
-    ordered = rising(points)
+    ordered = sorted(points, key=lambda point: point.restitution_factor)
     return StabilityCurve(
         curve=tuple(ordered),
         here=here,
@@ -298,11 +298,6 @@ def own_threshold(
         if max(point.height, point.scatter_high or 0.0) < friction:
             break
     return restitution_threshold(points, friction)
-
-
-def rising(points: Iterable[CriticalFriction]) -> list[CriticalFriction]:
-    """Return the points in the order of their restitution factors."""
-    return sorted(points, key=lambda point: point.restitution_factor)
 
 
 def threshold_factors(settings: StabilitySettings) -> Sequence[Ratio]:
