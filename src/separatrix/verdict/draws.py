@@ -171,8 +171,8 @@ def sample(
 ) -> Draws:
     """Draw the uncertain inputs of a study, by default with the measured frictions that it states.
 
-    Best is a power of two. The first of more samples are the same as fewer samples, and the draws of a seed
-    of the scrambling, by default the study's, are the same on every machine.
+    `samples` is from 1 to `MOST_SAMPLES`, best a power of two; the first of more are the same as fewer. The
+    draws of a seed of the scrambling, by default the study's, are the same on every machine.
 
     Raises
     ------
