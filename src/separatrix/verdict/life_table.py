@@ -111,7 +111,6 @@ class Duty(NamedTuple):
     """A part of the time, with the chain at its speed and load, and how its runs are made."""
 
     share: Ratio
-    study: Study
     solution: Solution
     settings: StabilitySettings
 
@@ -166,14 +165,14 @@ def life(
     if accelerated is not None and accelerated == study.operation.outer_speed:
         raise InputError("--accelerated", "must differ from the speed of the outer ring")
     test = accelerated and _duty(varied(study, {SPEED: accelerated}), candidate, 1.0)
+    duties = [*phases, test] if test else phases
 
     def node(place: Place) -> Node:
-        phase, i, j = place
-        if test and phase == len(phases):
-            return _node(test.solution, test.settings, runner)
+        at, i, j = duties[place[0]], *place[1:]
+        if at is test:
+            return _node(at.solution, at.settings, runner)
         values = {"film.race_friction": float(frictions[i]), "cage.pocket_clearance": clearances[j]}
-        at = phases[phase]
-        return _node(solve(varied(at.study, values), candidate), at.settings, runner)
+        return _node(solve(varied(at.solution.study, values), candidate), at.settings, runner)
 
     def answer(found: Mapping[Place, Node]) -> Life:
         if len(found) < len(places):
@@ -188,7 +187,7 @@ def life(
             for place, one in enumerate(phases)
         ]
         tested = _accelerated(test.solution, found[places[-1]], each, worn) if test else None
-        speed = sum(one.share * _turns(one.study) for one in phases)
+        speed = sum(one.share * _turns(one.solution.study) for one in phases)
         name = candidate.name if candidate else "the cage"
         return _life(name, each, worn, inputs, speed, revolutions, tested, notes)
 
@@ -198,9 +197,7 @@ def life(
         node,
         places,
         into=answer,
-        load=lambda place: _load(
-            (phases[place[0]] if place[0] < len(phases) else test or phases[0]).settings
-        ),
+        load=lambda place: _load(duties[place[0]].settings),
     )
 
 
@@ -267,7 +264,7 @@ def _shared(cases: Sequence[Mapping[str, float]]) -> list[tuple[Ratio, Mapping[s
 def _duty(study: Study, candidate: Candidate | None, share: Ratio) -> Duty:
     solution = solve(study, candidate)
     settings = settings_for(study.stability, moving_cage(solution, 0.0))
-    return Duty(share, study, solution, replace(settings, runs=min(RUNS, settings.runs)))
+    return Duty(share, solution, replace(settings, runs=min(RUNS, settings.runs)))
 
 
 def _turns(study: Study) -> Hertz:
