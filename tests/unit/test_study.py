@@ -108,6 +108,9 @@ def test_every_line_that_is_off_in_the_template_can_be_switched_on(read):
     beside = {
         "elastic_modulus": "poisson_ratio = 0.38",
         "ramp_start": 'ramp_time = "50 ms"',
+        "preload": 'arrangement = "single"',
+        "arrangement": 'preload = "28 N"',
+        "preload_kind": 'preload = "28 N"\narrangement = "face-to-face"',
         "worn_pocket_friction": 'worn_pocket_depth = "10 um"',
         "worn_pocket_depth": "worn_pocket_friction = 0.3",
         "pocket_axial_clearance": 'pocket_shape = "elongated"',

@@ -104,6 +104,27 @@ def heat_blocks(heat: Part | None) -> list[Block]:
     ]
 
 
+def pair_blocks(pair: Part | None) -> list[Block]:
+    """Return the loads of a preloaded pair, and where it gaps; nothing of a single bearing."""
+    if pair is None:
+        return []
+    gap = "no external load: balls leave their grooves first"
+    if pair.preload_kind == "spring":
+        gap = "no external load this way: the spring follows; against the spring, at the preload"
+    elif "gap_load" in pair:
+        gap = fill(pair, "an external axial load of {gap_load} at rest")
+    return [
+        Heading("Preloaded pair"),
+        facts(
+            ("Pair", f"{pair.arrangement}, {pair.preload_kind} preload"),
+            ("This bearing", fill(pair, "axial load {own_axial_load}: the external load presses it")),
+            ("The other bearing", fill(pair, "axial load {other_axial_load}")),
+            ("Offset by the preload", fill(pair, "{ring_offset} of each inner ring at rest")),
+            ("The pair gaps at", gap),
+        ),
+    ]
+
+
 def basis_facts(answer: Part) -> list[tuple[str, str | Cell]]:
     """Return the basis of a verdict: bearing, operation, film, and the numbers of the chain."""
     chain = answer.chain
