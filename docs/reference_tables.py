@@ -13,7 +13,6 @@ from reference_meanings import Line, lines_of
 from separatrix.chain.clearances import Clearances
 from separatrix.chain.contacts import BearingState, RaceContact
 from separatrix.chain.impact_restitution import Restitution
-from separatrix.chain.preloaded_pair import PairLoads
 from separatrix.chain.solution import Solution
 from separatrix.friction.logs.log import ColumnRead, RawLog
 from separatrix.friction.reduction import TestCourse, TestFriction
@@ -215,7 +214,7 @@ FILMS = (
 )
 VERBS = {
     "check": Verb((chain_answers.CheckAnswer,), CONTACTS),
-    "bearing": Verb((BearingState, Clearances, PairLoads), OF_BEARING),
+    "bearing": Verb((BearingState, Clearances), OF_BEARING),
     "traction": Verb((chain_answers.TractionAnswer,), TRACTION),
     "restitution": Verb((*CHAIN_RECORDS, chain_answers.RestitutionAnswer), FILMS),
     "mobility": Verb((chain_answers.MobilityAnswer,)),

@@ -89,7 +89,7 @@ def test_a_rigid_pair_loads_itself_at_speed_and_a_spring_does_not():
 
 
 def test_beyond_the_gap_one_bearing_carries_all():
-    """At rest; a millinewton below the gap the other still carries something."""
+    """A thousandth below the gap the other one still carries something."""
     gap = solved(pair()).gap_load
     beyond, below = solved(pair(axial_load=1.001 * gap)), solved(pair(axial_load=0.999 * gap))
     assert (beyond.own_axial_load, beyond.other_axial_load) == (1.001 * gap, 0.0)
@@ -121,12 +121,14 @@ def test_every_verb_has_the_bearing_that_the_external_load_presses():
 
 
 def test_the_answer_has_both_bearings_and_notes_on_the_lighter_one():
-    """A light bearing at speed has balls that its inner race hardly touches."""
+    """Far above the gap at rest the centrifugal force alone presses its balls, on the outer race."""
     study = separatrix.read_study("momentum-wheel")
-    at = replace(study.operation, axial_load=400.0, preload=40.0, arrangement=Arrangement.FACE_TO_FACE)
+    at = replace(study.operation, axial_load=2800.0, preload=10.0, arrangement=Arrangement.FACE_TO_FACE)
     answer = separatrix.bearing(replace(study, operation=at))
     found = answer.document()["pair"]
-    assert found["own_axial_load"] - found["other_axial_load"] == pytest.approx(400.0, rel=1e-12)
+    gaps, skids = answer.document()["warnings"][:2]
+    assert found["own_axial_load"] - found["other_axial_load"] == pytest.approx(2800.0, rel=1e-12)
     assert (found["arrangement"], found["preload_kind"]) == ("face-to-face", "rigid")
-    assert any(note.startswith("The other bearing of the pair: ") for note in answer.document()["warnings"])
-    assert "The pair gaps at" in answer.summary()
+    assert gaps.startswith("At rest this axial_load gaps the preloaded pair: the limit is 28.7 N.")
+    assert skids.startswith("The other bearing of the pair: 12 of 12 balls are almost unloaded")
+    assert "an external axial load of 28.74 N at rest" in answer.summary()

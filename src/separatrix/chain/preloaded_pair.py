@@ -17,7 +17,7 @@ from scipy.optimize import brentq
 
 from separatrix.chain.equilibrium import equilibrium
 from separatrix.ground.errors import InputError
-from separatrix.ground.units import Metre, Newton, Ratio
+from separatrix.ground.units import Metre, Newton, Ratio, format_quantity
 from separatrix.study.study import Arrangement, BallBearing, KinematicModel, Operation, PreloadKind
 
 REMEMBERED = 256
@@ -39,8 +39,8 @@ GAPPED = (
 class PairLoads:
     """Axial loads of a preloaded pair, and the external load that it bears without a gap."""
 
-    arrangement: Arrangement
-    preload_kind: PreloadKind
+    arrangement: Arrangement  # of the two bearings
+    preload_kind: PreloadKind  # what keeps the preload
     own_axial_load: Newton  # of the bearing of the study, which the external load presses
     other_axial_load: Newton  # of the other bearing of the pair; 0 if the pair gaps
     ring_offset: Metre
@@ -86,6 +86,13 @@ def pair_loads(
     if other + external == 0.0:
         rule = "is lost at this speed: the balls press the outer races alone"
         raise InputError("[operation] preload", rule, cure="Raise the preload or lower the speed.")
+    notes: tuple[str, ...] = () if other > 0.0 else (GAPPED,)
+    if other > 0.0 and gap is not None and external >= gap:
+        limit = format_quantity(gap, "N", 3)
+        notes = (
+            f"At rest this axial_load gaps the preloaded pair: the limit is {limit}. At speed only the "
+            "centrifugal force of its balls loads the other bearing.",
+        )
     return PairLoads(
         arrangement=operation.arrangement or Arrangement.BACK_TO_BACK,
         preload_kind=kind,
@@ -93,7 +100,7 @@ def pair_loads(
         other_axial_load=other,
         ring_offset=offset,
         gap_load=gap,
-        notes=() if other > 0.0 else (GAPPED,),
+        notes=notes,
     )
 
 

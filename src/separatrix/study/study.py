@@ -146,10 +146,10 @@ class Operation:
         example='"300 daN"',
         without="0 N beside a preload, else required",
     )
-    """Beside a preload that of the shaft, in the direction that presses this bearing of a pair."""
+    """With a preload the external load of the shaft, which presses this bearing of a pair."""
 
     preload: Newton | None = key(
-        positive(1e-3, 1e9), default=None, without="not given: axial_load presses the balls"
+        positive(1e-3, 1e9), default=None, without="not given: axial_load is the whole axial load"
     )
     """Axial load of each bearing at rest without external load."""
 
@@ -157,7 +157,7 @@ class Operation:
     """Of the pair, or "single" for one bearing that the preload presses as axial_load does."""
 
     preload_kind: PreloadKind | None = key(
-        default=None, only=(_PAIR,), without='not given; "rigid" in a pair'
+        default=None, only=(_PAIR,), without='not given; default "rigid" in a pair'
     )
     """A "rigid" pair keeps the distance of its rings, a "spring" its force on the other bearing."""
 
