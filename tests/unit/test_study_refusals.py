@@ -77,7 +77,7 @@ ball_material = "440C" => ball_material = "404C"
 "300 daN" => "0 N" :: [operation] axial_load ; nothing presses the balls
 axial_load = "300 daN" => axial_load = "300 daN"\nmoment = "1 N m"\ntilt = "1 mrad"
     :: [operation] tilt and moment exclude each other
-axial_load = "300 daN"\n =>  :: line 14: [operation] lacks: axial_load (or preload)
+axial_load = "300 daN"\n =>  :: [operation] axial_load is missing ; or preload and arrangement.
 axial_load = "300 daN" => preload = "300 daN" :: [operation] arrangement is missing ; preload, arrangement
 axial_load = "300 daN" => axial_load = "300 daN"\npreload_kind = "spring"
     :: [operation] preload_kind has a meaning only for a pair

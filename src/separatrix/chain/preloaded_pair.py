@@ -13,12 +13,10 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 from math import sqrt
 
-from scipy.optimize import brentq
-
 from separatrix.chain.equilibrium import equilibrium
 from separatrix.ground.errors import InputError
 from separatrix.ground.units import Metre, Newton, Ratio, format_quantity
-from separatrix.study.study import Arrangement, BallBearing, KinematicModel, Operation, PreloadKind
+from separatrix.study.study import BallBearing, KinematicModel, Operation, PreloadKind
 
 REMEMBERED = 256
 """Pairs that are kept, by the records they are made of."""
@@ -33,13 +31,16 @@ GAPPED = (
     "The preloaded pair gaps: under this axial_load the other bearing carries nothing, and its balls and "
     "cage are loose. The study is of the bearing that carries the load."
 )
+GAPS_AT_REST = (
+    "At rest this axial_load gaps the preloaded pair: the limit is {}. At speed only the centrifugal force "
+    "of its balls loads the other bearing."
+)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PairLoads:
     """Axial loads of a preloaded pair, and the external load that it bears without a gap."""
 
-    arrangement: Arrangement  # of the two bearings
     preload_kind: PreloadKind  # what keeps the preload
     own_axial_load: Newton  # of the bearing of the study, which the external load presses
     other_axial_load: Newton  # of the other bearing of the pair; 0 if the pair gaps
@@ -86,21 +87,16 @@ def pair_loads(
     if other + external == 0.0:
         rule = "is lost at this speed: the balls press the outer races alone"
         raise InputError("[operation] preload", rule, cure="Raise the preload or lower the speed.")
-    notes: tuple[str, ...] = () if other > 0.0 else (GAPPED,)
+    notes = [GAPPED] if other == 0.0 else []
     if other > 0.0 and gap is not None and external >= gap:
-        limit = format_quantity(gap, "N", 3)
-        notes = (
-            f"At rest this axial_load gaps the preloaded pair: the limit is {limit}. At speed only the "
-            "centrifugal force of its balls loads the other bearing.",
-        )
+        notes = [GAPS_AT_REST.format(format_quantity(gap, "N", 3))]
     return PairLoads(
-        arrangement=operation.arrangement or Arrangement.BACK_TO_BACK,
         preload_kind=kind,
         own_axial_load=other + external,
         other_axial_load=other,
         ring_offset=offset,
         gap_load=gap,
-        notes=notes,
+        notes=tuple(notes),
     )
 
 
@@ -114,6 +110,8 @@ def _root(excess: Callable[[Newton], float], least: Newton) -> Newton:
 
     It is searched upward from there: loads that press balls out of their grooves are refused.
     """
+    from scipy.optimize import brentq  # half of the start of a verb that has no pair
+
     low, stride = least, STRIDE
     if excess(low) >= 0.0:
         return 0.0

@@ -147,12 +147,6 @@ class AllOrNone(NamedTuple):
     names: tuple[str, ...]
 
 
-class AnyOf(NamedTuple):
-    """Keys of which at least one is given. In the class variable `RULES` of a record."""
-
-    names: tuple[str, ...]
-
-
 def one_of(*groups: str | tuple[str, ...], required: bool = False) -> OneOf:
     """Keys, or groups of keys, of which at most one is given; `required`: exactly one."""
     return OneOf(tuple((group,) if isinstance(group, str) else group for group in groups), required)
@@ -161,11 +155,6 @@ def one_of(*groups: str | tuple[str, ...], required: bool = False) -> OneOf:
 def all_or_none(*names: str) -> AllOrNone:
     """Keys that are given together or not at all."""
     return AllOrNone(names)
-
-
-def any_of(*names: str) -> AnyOf:
-    """Keys of which at least one is given."""
-    return AnyOf(names)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -408,11 +397,6 @@ def _structure(
             absent = [name for name in rule.names if name not in written]
             if 0 < len(absent) < len(rule.names):
                 yield Fault(absent[0], "is missing", f"Give all of {', '.join(rule.names)}, or none.", "")
-            continue
-        if isinstance(rule, AnyOf):
-            if not any(name in written for name in rule.names):
-                name, *others = rule.names
-                lacking[name] = f"{name} (or {', '.join(others)})"
             continue
         given = [one for group in rule.groups if (one := [name for name in group if name in written])]
         for first, second in pairwise(given):

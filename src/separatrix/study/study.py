@@ -20,7 +20,6 @@ from separatrix.ground.schema import (
     Only,
     Spelled,
     all_or_none,
-    any_of,
     between,
     check,
     key,
@@ -131,34 +130,22 @@ class Operation:
     until the balls balance it. With a `preload` the other loads are external: those of the shaft.
     """
 
-    RULES: ClassVar = (
-        one_of("moment", "tilt"),
-        any_of("axial_load", "preload"),
-        all_or_none("preload", "arrangement"),
-    )
+    RULES: ClassVar = (one_of("moment", "tilt"), all_or_none("preload", "arrangement"))
     REPLACED: ClassVar = {"preload": ("axial_load",)}
 
     inner_speed: RadianPerSecond = key(between(-1e6, 1e6), example='"15000 rpm"')
     axial_load: Newton | None = key(
-        not_negative(1e9),
-        default=None,
-        hint=_LIFTS,
-        example='"300 daN"',
-        without="0 N beside a preload, else required",
+        not_negative(1e9), default=None, hint=_LIFTS, example='"300 daN"', without="0 N with a preload"
     )
     """With a preload the external load of the shaft, which presses this bearing of a pair."""
 
-    preload: Newton | None = key(
-        positive(1e-3, 1e9), default=None, without="not given: axial_load is the whole axial load"
-    )
+    preload: Newton | None = key(positive(1e-3, 1e9), default=None, without="not given: axial_load alone")
     """Axial load of each bearing at rest without external load."""
 
     arrangement: Arrangement | None = key(default=None, without="not given: there is no preload")
     """Of the pair, or "single" for one bearing that the preload presses as axial_load does."""
 
-    preload_kind: PreloadKind | None = key(
-        default=None, only=(_PAIR,), without='not given; default "rigid" in a pair'
-    )
+    preload_kind: PreloadKind | None = key(default=None, only=(_PAIR,), without='not given; default "rigid"')
     """A "rigid" pair keeps the distance of its rings, a "spring" its force on the other bearing."""
 
     outer_speed: RadianPerSecond = key(between(-1e6, 1e6), default=0.0)
@@ -215,9 +202,12 @@ def _something_presses_the_balls(
     axial_load: Newton | None, preload: Newton | None, radial_load: Newton, moment: NewtonMetre | None
 ) -> Faults:
     """A held tilt takes any moment; without a load, even with a tilt, nothing is pressed together."""
-    if not (axial_load or preload or radial_load or moment):
+    cure = "Give the axial load, or preload and arrangement."
+    if axial_load is None and preload is None:
+        yield Fault("axial_load", "is missing", cure)
+    elif not (axial_load or preload or radial_load or moment):
         rule = "must be > 0 when there is no radial load or moment: nothing presses the balls"
-        yield Fault("axial_load", rule, "Give it, or preload and arrangement.")
+        yield Fault("axial_load", rule, cure)
 
 
 @record

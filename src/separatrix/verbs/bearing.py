@@ -57,7 +57,7 @@ def page(answer: Part) -> Page:
             fact(answer, "friction_torque"),
             ("Heat of friction", fill(most, "{heat_inner} inner, {heat_outer} outer race, most loaded ball")),
         ),
-        *pair_blocks(answer.pair),
+        *pair_blocks(answer),
         *heat_blocks(answer.heat),
         Heading("Balls"),
         balls(answer),

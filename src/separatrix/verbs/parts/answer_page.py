@@ -220,8 +220,8 @@ def operation_words(study: Json, varied: Sequence[str] = ()) -> str:
 
     speeds = each("inner_speed", "outer_speed", words="{0} ring {1}")
     loads = each("preload", "axial_load", "radial_load", "moment", words="{1} {0}")
-    kind = ", ".join(each("arrangement", "preload_kind"))
-    return _listed("; ", ", ".join([*speeds, *loads]), kind, " at ".join(each("fluid", "temperature")))
+    pair = each("arrangement", "preload_kind")
+    return _listed("; ", ", ".join([*speeds, *loads, *pair]), " at ".join(each("fluid", "temperature")))
 
 
 def coat_words(study: Json, varied: Sequence[str] = ()) -> str:

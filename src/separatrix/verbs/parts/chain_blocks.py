@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from separatrix.ground.document import Part
 from separatrix.present.blocks import Block, Cell, Column, Equation, Heading, Level, Table, facts, text_column
-from separatrix.verbs.parts.answer_page import bearing_facts
+from separatrix.verbs.parts.answer_page import bearing_facts, operation_words
 from separatrix.verbs.parts.quantity_text import cell, fact, fill, named, show
 
 
@@ -104,8 +104,9 @@ def heat_blocks(heat: Part | None) -> list[Block]:
     ]
 
 
-def pair_blocks(pair: Part | None) -> list[Block]:
+def pair_blocks(answer: Part) -> list[Block]:
     """Return the loads of a preloaded pair, and where it gaps; nothing of a single bearing."""
+    pair = answer.pair
     if pair is None:
         return []
     gap = "no external load: balls leave their grooves first"
@@ -116,7 +117,8 @@ def pair_blocks(pair: Part | None) -> list[Block]:
     return [
         Heading("Preloaded pair"),
         facts(
-            ("Pair", f"{pair.arrangement}, {pair.preload_kind} preload"),
+            ("Preload", pair.preload_kind),
+            ("Operation", operation_words(answer.values["study"])),
             ("This bearing", fill(pair, "axial load {own_axial_load}: the external load presses it")),
             ("The other bearing", fill(pair, "axial load {other_axial_load}")),
             ("Offset by the preload", fill(pair, "{ring_offset} of each inner ring at rest")),
