@@ -131,4 +131,4 @@ def test_the_answer_has_both_bearings_and_notes_on_the_lighter_one():
     assert found["preload_kind"] == "rigid"
     assert gaps.startswith("At rest this axial_load gaps the preloaded pair: the limit is 28.7 N.")
     assert skids.startswith("The other bearing of the pair: 12 of 12 balls are almost unloaded")
-    assert "an external axial load of 28.74 N at rest" in answer.summary()
+    assert "an external axial load of 28.7 N at rest" in answer.summary()
