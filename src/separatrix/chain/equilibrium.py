@@ -259,7 +259,7 @@ class _Place(NamedTuple):
 def _ring(bearing: BallBearing, operation: Operation, p: Problem, cross_moment: NewtonMetre) -> _Ring:
     """Collect the loads; one ball represents all where load and ring make them alike."""
     Z, arm = bearing.ball_count, 0.5 * p.pitch_diameter
-    forces = operation.axial_load, operation.radial_load, 0.0
+    forces = operation.axial_load or 0.0, operation.radial_load, 0.0
     loads = np.array((*forces, cross_moment / arm, -(operation.moment or 0.0) / arm), dtype=float)
     tilt = float(operation.tilt or 0.0)
     held = operation.tilt is not None or (operation.is_tilt_held and cross_moment == 0.0)
