@@ -1,7 +1,7 @@
 """Compiled kernels in a wheel: hatchling, which builds it, calls this. `tools/wheel.py` names their folder.
 
-Without the variable SEPARATRIX_KERNELS the wheel has none, is for any platform, and compiles once where it
-is installed.
+Without the variable SEPARATRIX_KERNELS the wheel has none and is for any platform; the program then compiles
+once where it is installed.
 """
 
 import os
@@ -15,7 +15,7 @@ from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
 
 class KernelsHook(BuildHookInterface):
-    """Puts the folder of kernels into the wheel, and says for whom they are."""
+    """Puts the folder of kernels into the wheel, with the tag and the versions that they fit."""
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
         """Add the folder, the tag of this Python and platform, and versions up to those of the kernels."""

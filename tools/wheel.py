@@ -1,7 +1,7 @@
 """A wheel for this platform that carries compiled kernels, so that its first answer compiles nothing.
 
     python tools/wheel.py build    # into dist/, from the sources of this clone
-    python tools/wheel.py check    # installs it in a fresh environment, whose folder nobody can write
+    python tools/wheel.py check    # installs it in a fresh environment that cannot be written
 
 The kernels are compiled for `TARGET`, a family of CPUs, and not for the CPU at hand. They compute the same
 bits: no floating-point operation is merged or reordered, whatever the CPU.
@@ -106,7 +106,7 @@ def since(begun: tuple[float, float]) -> str:
 def asked(venv: Path, source: Path, home: Path, verb: str) -> str:
     """Ask a verb where only its home can be written; return the time that it took."""
     command = [str(venv / "bin" / "separatrix"), verb, "cryogenic-turbopump", "--json"]
-    if os.geteuid() == 0:  # who may write anything anyway
+    if os.geteuid() == 0:  # root ignores permissions: give that up
         command = ["setpriv", "--bounding-set", "-dac_override", "--inh-caps", "-dac_override", *command]
     environment = {"PATH": os.environ["PATH"], "HOME": str(home)}
     begun = clocks()
