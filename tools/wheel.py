@@ -8,6 +8,7 @@ bits: no floating-point operation is merged or reordered, whatever the CPU.
 """
 
 import os
+import platform
 import shutil
 import subprocess
 import sys
@@ -55,6 +56,8 @@ def build() -> None:
     """Compile the kernels, unless they are there, and build the wheel with them."""
     from separatrix.ground.compiled import TARGET, VERSIONS, source_stamp
 
+    if platform.machine() not in ("x86_64", "AMD64"):
+        sys.exit(f"The kernels of a wheel are for {TARGET}. Here, build one without: pip wheel --no-deps .")
     stamp = source_stamp(ROOT / "src" / "separatrix")
     kernels = BUILD / f"{VERSIONS}-{stamp}"
     if not kernels.exists():
