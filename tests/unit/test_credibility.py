@@ -52,7 +52,7 @@ def test_the_report_has_the_claimed_levels_and_counts_the_study():
     assert counted["Use assessment"] == (
         "2 notes on what is outside its range; the friction of 1 of 2 candidates is extrapolated"
     )
-    assert counted["Uncertainty characterization"].startswith("no input has an uncertainty")
+    assert counted["Uncertain inputs"].startswith("none is stated")
     assert counted["Results robustness"] == "no input was varied"
     known = [
         one["confidence"] for row in STUDY["ranking"]["candidates"] for one in row["friction"].values() if one
@@ -67,6 +67,6 @@ def test_uncertain_and_varied_inputs_are_named(tmp_path):
     path.write_text('extends = "cryogenic-turbopump"\nfilm.thickness = "0.5 um +- 20 %"\n')
     bearing = {"study": resolved(separatrix.read_study(path)), "warnings": []}
     _, counted = _shown({"bearing": bearing, "sensitivity": bearing})
-    assert counted["Uncertainty characterization"] == "uncertain: film.thickness"
+    assert counted["Uncertain inputs"] == "film.thickness"
     assert counted["Results robustness"] == "varied by `sensitivity`"
     assert counted["Use assessment"] == "no notes on what is outside its range"

@@ -5,11 +5,13 @@ The levels of the program are data, `credibility.toml`; what a study adds is cou
 
 from __future__ import annotations
 
+import re
 import tomllib
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from functools import cache, partial
 from importlib.resources import files
+from operator import itemgetter
 from typing import Any
 
 from separatrix.ground.document import Document
@@ -44,30 +46,27 @@ def credibility(documents: Mapping[str, Document]) -> list[Block]:
     study = next(iter(documents.values()))["study"]
     levels = (text_column(words, partial(_level, key)) for key, words in FACTORS.items())
     notes = {text for one in documents.values() for text in one["warnings"]}
-    varied = [f"`{verb}`" for verb in ("sensitivity", "sweep", "map") if verb in documents]
+    uncertain = ", ".join(one["name"] for one in study["uncertain_inputs"])
+    varied = ", ".join(f"`{verb}`" for verb in ("sensitivity", "sweep", "map") if verb in documents)
+    outside = f"{len(notes) or 'no'} notes on what is outside its range"
     return [
         Heading("Credibility", Level.REPORT),
-        Table("credibility", (text_column("part", _name), *levels), claims(), CAPTION, Level.REPORT),
+        Table(
+            "credibility", (text_column("part", itemgetter("name")), *levels), claims(), CAPTION, Level.REPORT
+        ),
         facts(
             ("Input pedigree", _pedigree(study)),
-            (
-                "Use assessment",
-                f"{len(notes) or 'no'} notes on what is outside its range{_extrapolated(documents)}",
-            ),
-            ("Uncertainty characterization", _uncertainty(study)),
-            ("Results robustness", f"varied by {', '.join(varied)}" if varied else "no input was varied"),
+            ("Use assessment", outside + _extrapolated(documents.get("rank", {}))),
+            ("Uncertain inputs", uncertain or "none is stated: intervals are counting noise"),
+            ("Results robustness", f"varied by {varied}" if varied else "no input was varied"),
             ("Technical review", "of this use: to be stated by whoever uses the answer"),
             level=Level.REPORT,
         ),
     ]
 
 
-def _name(row: Json) -> str:
-    return str(row["name"])
-
-
-def _level(factor: str, row: Json) -> str:
-    return str(row[factor]["level"])
+def _level(factor: str, row: Json) -> int:
+    return int(row[factor]["level"])
 
 
 def _pedigree(study: Json) -> str:
@@ -76,8 +75,7 @@ def _pedigree(study: Json) -> str:
 
     origins = [str(entry["origin"]) for *_, entry in inputs_of(study) if entry.get("value") not in (None, [])]
     assumed = sum(one.startswith("default") for one in origins)
-    counts = Counter(_confidences(study)).most_common()
-    known = ", ".join(f"{count} {word}" for word, count in counts)
+    known = ", ".join(f"{count} {word}" for word, count in Counter(_confidences(study)).most_common())
     return f"{len(origins) - assumed} inputs stated, {assumed} by default; materials and frictions: {known}"
 
 
@@ -85,28 +83,18 @@ def _confidences(part: Any) -> Iterator[str]:
     """Yield how sure each number of the study's materials and frictions is; not the rest of their records."""
     from separatrix.study.library import CONFIDENCES
 
-    inside: Iterable[Any] = part if isinstance(part, list) else ()
     if isinstance(part, Mapping):
-        words = str(part.get("confidence") or "").replace(";", " ").replace(",", " ").split()
+        words = re.findall(r"\w+", str(part.get("confidence") or ""))
         yield from (word for word in words if word in CONFIDENCES)
-        inside = (one for key, one in part.items() if key not in ("record", "table", "other_tests"))
-    for one in inside:
+        part = [one for key, one in part.items() if key not in ("record", "table", "other_tests")]
+    for one in part if isinstance(part, list) else ():
         yield from _confidences(one)
 
 
-def _extrapolated(documents: Mapping[str, Document]) -> str:
+def _extrapolated(ranked: Json) -> str:
     """In how many rows of a ranking the friction is extrapolated."""
-    ranked = documents.get("rank", {})
     places = (one for one in ranked.get("environments", ()) if one["name"] == ranked["environment"])
-    rows = [row for place in places for row in place["materials"] if "extrapolation" in row]
-    count = sum(bool(row["extrapolation"]) for row in rows)
-    return f"; the friction of {count} of {len(rows)} candidates is extrapolated" if rows else ""
-
-
-def _uncertainty(study: Json) -> str:
-    names = [str(one["name"]) for one in study["uncertain_inputs"]]
-    return (
-        f"uncertain: {', '.join(names)}"
-        if names
-        else "no input has an uncertainty: intervals are counting noise"
-    )
+    found = [
+        bool(row["extrapolation"]) for one in places for row in one["materials"] if "extrapolation" in row
+    ]
+    return f"; the friction of {sum(found)} of {len(found)} candidates is extrapolated" if found else ""
