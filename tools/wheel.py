@@ -9,6 +9,7 @@ bits: no floating-point operation is merged or reordered, whatever the CPU.
 
 import os
 import platform
+import re
 import shutil
 import subprocess
 import sys
@@ -30,11 +31,15 @@ ASKED = ("rank", "bearing", "traction", "restitution", "mobility", "stability", 
 
 def compile_for_target() -> None:
     """Compile every kernel that a verb calls; the variables of numba name the CPU."""
+    import separatrix
     from separatrix.front import main
     from separatrix.study.study import BallModel
 
     for verb in VERBS:
         assert main([verb, "cryogenic-turbopump", "--json", "--quiet"]) == 0
+    assert separatrix.solve(
+        separatrix.read_study("cryogenic-turbopump")
+    ).orbit_by_diameter  # of unequal balls
     with ProcessPoolExecutor() as pool:
         list(pool.map(cages, [ball for ball in BallModel if ball is not BallModel.AUTO]))
 
@@ -64,12 +69,24 @@ def build() -> None:
         target = {"NUMBA_CPU_NAME": TARGET, "NUMBA_CPU_FEATURES": "", "NUMBA_CACHE_DIR": str(BUILD)}
         command = [sys.executable, "-W", "ignore", __file__, "compile_for_target"]
         subprocess.run(command, env=os.environ | target, stdout=subprocess.DEVNULL, check=True)
-        (BUILD / f"separatrix-kernels-{stamp}").rename(kernels)
+        made = BUILD / f"separatrix-kernels-{stamp}"
+        if missing := named_kernels() - {path.name.partition("-")[0] for path in made.glob("*.nbc")}:
+            sys.exit(f"No verb of this program compiles {', '.join(sorted(missing))}: add one that does.")
+        made.rename(kernels)
     pip = [sys.executable, "-m", "pip", "wheel", "--quiet", "--no-deps", "--no-build-isolation"]
     named = os.environ | {"SEPARATRIX_KERNELS": str(kernels)}
     subprocess.run([*pip, "--wheel-dir", str(DIST), str(ROOT)], env=named, check=True)
     for wheel in sorted(DIST.glob("*-cp*.whl")):
         print(f"{wheel.relative_to(ROOT)}: {wheel.stat().st_size / 1e6:.1f} MB")
+
+
+def named_kernels() -> set[str]:
+    """Return module and name of every kernel in the sources, as numba names its files."""
+    return {
+        f"{path.stem}.{name}"
+        for path in (ROOT / "src").rglob("*.py")
+        for name in re.findall(r"^@kernel\ndef (\w+)", path.read_text(encoding="utf-8"), re.MULTILINE)
+    }
 
 
 def check() -> None:
