@@ -132,7 +132,11 @@ def changed(base: str, change: str) -> str:
     return base.replace(old, new.removeprefix(" "), 1)
 
 
-def wait_until(happened, seconds: float = 120.0) -> None:
+PATIENCE = 600.0
+"""For what takes seconds where the machine is idle: one that hangs fails, a busy machine does not [s]."""
+
+
+def wait_until(happened, seconds: float = PATIENCE) -> None:
     """Wait for something to happen."""
     end = time.monotonic() + seconds
     while not happened():

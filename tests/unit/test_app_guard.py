@@ -10,7 +10,7 @@ import threading
 from urllib.parse import parse_qs, quote, urlsplit
 
 import pytest
-from commands import SMALL, wait_until
+from commands import PATIENCE, SMALL, wait_until
 
 from separatrix.front.page.server import MOST_BYTES, Server
 
@@ -254,5 +254,5 @@ def test_no_connection_leaves_the_machine(tmp_path, folder):
         assert client.ask("/answer/bearing/small.toml")[0] == 200
     finally:
         server.terminate()
-        server.communicate(timeout=30)
+        server.communicate(timeout=PATIENCE)
     assert trace.read_text() == ""

@@ -224,7 +224,7 @@ def study(text: str, base: str = BASE) -> str:
 @pytest.mark.parametrize("case", ANSWERED)
 def test_an_odd_cage_is_answered(case, capsys):
     """One document, an outcome with its sentence, and nothing said on standard error."""
-    assert main(["simulate", study(ANSWERED[case]), "--json"]) == 0
+    assert main(["simulate", study(ANSWERED[case]), "--json", "--quiet"]) == 0
     out, err = capsys.readouterr()
     found = json.loads(out)
     assert (err, found["outcome"] in RunOutcome.__members__) == ("", True)

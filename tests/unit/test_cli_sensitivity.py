@@ -8,7 +8,7 @@ import signal
 from pathlib import Path
 
 import pytest
-from commands import document
+from commands import document, wait_until
 
 from separatrix.front import main
 from separatrix.verdict import uncertain_study as uncertain
@@ -112,6 +112,7 @@ def test_an_interrupt_keeps_the_cases_that_were_counted(capsys, monkeypatch):
         found = counted(drawn, case, runner)
         if case == ("A",):
             os.kill(os.getpid(), signal.SIGINT)
+            wait_until(lambda: runner.stop.is_set)  # the main thread may be late to it
         return found
 
     monkeypatch.setattr(uncertain, "counted", count)

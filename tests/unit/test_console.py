@@ -14,7 +14,7 @@ from concurrent.futures import Future
 from pathlib import Path
 
 import pytest
-from commands import COMMAND, wait_until
+from commands import COMMAND, PATIENCE, wait_until
 
 from separatrix.front import console, main
 from separatrix.ground.compiled import part
@@ -33,7 +33,7 @@ ROOT = Path(__file__).parents[2]
 def run(*arguments: str, **options) -> subprocess.CompletedProcess:
     """Run the command and return what it said."""
     return subprocess.run(
-        [*COMMAND, *arguments], capture_output=True, timeout=120, check=False, **{"text": True} | options
+        [*COMMAND, *arguments], capture_output=True, timeout=PATIENCE, check=False, **{"text": True} | options
     )
 
 
@@ -66,14 +66,14 @@ def test_a_reader_that_goes_away_is_no_error():
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
         process.stdout.close()
         assert process.stderr.read() == b""
-        assert process.wait(60) == 0
+        assert process.wait(PATIENCE) == 0
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs a device that is always full")
 def test_a_full_disk_is_said_in_one_line():
     """Standard output on a full disk: status 2, one line."""
     with open("/dev/full", "w") as full:
-        said = {"stdout": full, "stderr": subprocess.PIPE, "text": True, "timeout": 60, "check": False}
+        said = {"stdout": full, "stderr": subprocess.PIPE, "text": True, "timeout": PATIENCE, "check": False}
         done = subprocess.run([*COMMAND, "check", "le7"], **said)
     assert done.returncode == 2
     assert done.stderr.startswith("separatrix: Standard output cannot be written")
@@ -85,7 +85,7 @@ def test_closed_streams_do_not_crash(study, status):
     """Started with standard output and error closed, as some schedulers do."""
     code = "import os, sys; os.close(1); os.close(2); os.execv(sys.executable, sys.argv[1:])"
     command = [sys.executable, "-c", code, *COMMAND, "check", study]
-    assert subprocess.run(command, capture_output=True, timeout=60, check=False).returncode == status
+    assert subprocess.run(command, capture_output=True, timeout=PATIENCE, check=False).returncode == status
 
 
 @pytest.mark.parametrize(("encoding", "more"), [("ascii", ()), ("cp1252", ("--json",))])
@@ -119,7 +119,7 @@ def test_an_interrupt_is_one_line_and_status_130(tmp_path):
     try:
         wait_until(out.exists)
         process.send_signal(signal.SIGINT)
-        _, said = process.communicate(timeout=120)
+        _, said = process.communicate(timeout=PATIENCE)
     finally:
         process.kill()
     assert process.returncode == 130

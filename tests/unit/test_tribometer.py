@@ -9,7 +9,7 @@ import sys
 
 import numpy as np
 import pytest
-from commands import column_map, log, read_friction, wait_until
+from commands import PATIENCE, column_map, log, read_friction, wait_until
 from test_reference_tables import missing
 
 import separatrix
@@ -151,7 +151,7 @@ def test_an_interrupt_leaves_no_friction_file(logs):
     process = subprocess.Popen(call, cwd=logs, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     wait_until((logs / "f-plots").exists)  # the folders are made before the first log is read
     os.kill(process.pid, signal.SIGINT)
-    out, error = process.communicate(timeout=60)
+    out, error = process.communicate(timeout=PATIENCE)
     assert process.returncode == 130
     assert out == ""
     assert error == "separatrix: interrupted; no friction file was written.\n"

@@ -137,23 +137,8 @@ def equilibrium(
     Each ball balances its two Hertz contacts, its centrifugal force and its gyroscopic moment; the inner ring
     balances axial and radial load, and is held parallel or at `operation.tilt` or balances a given moment.
 
-    Parameters
-    ----------
-    bearing : BallBearing
-        Geometry and materials; the ball material needs a density unless the speeds are 0.
-    operation : Operation
-        Speeds and loads on the inner ring.
-    model : KinematicModel
-        How the spin axis of a ball is found.
-    race_friction : float
-        Coulomb friction of ball on race, > 0 in the free model and unused in the others [-].
-    cross_moment : float
-        Moment about the direction of the radial load [N m]; with one the inner ring tilts freely.
-
-    Returns
-    -------
-    Equilibrium
-        Per ball, shape (ball,), and for the ring.
+    The friction of ball on race is > 0 in the free model and unused in the others [-]. With a `cross_moment`
+    about the direction of the radial load [N m] the inner ring tilts freely.
 
     Raises
     ------
