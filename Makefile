@@ -8,7 +8,7 @@ unexport PYTHONDONTWRITEBYTECODE
 
 BROWSER_TESTS := $(BIN)/pytest -q browser_tests -c browser_tests/pytest.ini
 
-.PHONY: demo test browser-test check bench docs clean kernels
+.PHONY: demo test browser-test check bench docs clean kernels wheel wheel-check
 
 demo: .venv/ready ## rank the paper's seven cage materials
 	$(BIN)/separatrix demo --out demo
@@ -36,12 +36,18 @@ browser-test: kernels ## the local page in Chromium, which the system has
 bench: .venv/ready ## speeds; numbers go in benchmarks/README.md
 	$(BIN)/pytest benchmarks --benchmark-only -p no:xdist
 
+wheel: .venv/ready ## a package for this platform with compiled kernels, into dist/
+	$(BIN)/python tools/wheel.py build
+
+wheel-check: wheel ## install it where nothing can be written: the first answer compiles nothing
+	$(BIN)/python tools/wheel.py check
+
 docs: .venv/ready
 	$(BIN)/pip install --quiet --constraint constraints.txt --editable '.[docs]'
 	$(BIN)/sphinx-build -W -n docs docs/_build
 
 clean:
-	rm -rf .venv demo docs/_build docs/generated
+	rm -rf .venv build demo dist docs/_build docs/generated
 
 .venv/ready: pyproject.toml constraints.txt
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "separatrix needs Python 3.11 or later; name one: make PYTHON=python3.11")'

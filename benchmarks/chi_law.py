@@ -34,7 +34,8 @@ from separatrix.ground.units import Array
 from separatrix.present.draw import NOTHING, PAGE, STYLE
 from separatrix.present.figure import BLUE, GREEN, GREY, PURPLE, VERMILION
 from separatrix.study.study import StabilitySettings
-from separatrix.verdict.crossing import LADDER, Crossing, GrowthCounter
+from separatrix.verdict.crossing import LADDER, Crossing, cage_at, responses
+from separatrix.verdict.long_jobs import Runner
 from separatrix.verdict.stability_curve import critical_friction, linear_limit
 
 MASS, RADIUS, HALF_PLAY, STIFFNESS = 0.05, 0.03, 0.3e-3, 3e6
@@ -93,20 +94,15 @@ def computed(eta: float, chi: float, runs: int) -> Point:
 
 def pressed_pockets(eta: float, settings: StabilitySettings) -> Crossing:
     """Critical friction by counting runs."""
-    counter = GrowthCounter(CAGE, settings)
-    at = critical_friction(CAGE, eta, settings, counter=counter, band=False)
+    at = critical_friction(CAGE, eta, settings, band=False)
     if at.critical_friction is None or at.scatter_low is None or at.scatter_high is None:
         raise SystemExit(f"eta {eta:g}, kick {settings.kicks[0]:g} m/s: {at.reason}")
     found = Crossing(at.critical_friction, at.scatter_low, at.scatter_high)
     low, high = step_around(found.value)
     if found.high / found.low > 1.0001 * high / low:
         return found
-    return sharpened(
-        found,
-        low,
-        high,
-        lambda f: counter.count(eta, f, settings.kicks[0], first_run=0, runs=AGAIN).interval(),
-    )
+    counts = responses(cage_at(CAGE, eta, 0.0), settings, settings.kicks, Runner())[settings.kicks[0]]
+    return sharpened(found, low, high, lambda f: counts.look(f, 0, AGAIN).interval())
 
 
 def step_around(friction: float) -> tuple[float, float]:

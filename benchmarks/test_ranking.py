@@ -6,7 +6,6 @@ from separatrix.cage import moving_cage
 from separatrix.chain.contacts import bearing_state, race_traction
 from separatrix.chain.solution import solve
 from separatrix.study.reading import read_study
-from separatrix.verdict.crossing import GrowthCounter
 from separatrix.verdict.long_jobs import Runner
 from separatrix.verdict.ranking import rank
 from separatrix.verdict.stability_curve import critical_friction
@@ -37,7 +36,7 @@ def test_one_point_of_the_stability_curve(benchmark, study):
     cage, settings = moving_cage(solve(study), 0.1), study.stability
 
     def point():
-        return critical_friction(cage, 0.6, settings, counter=GrowthCounter(cage, settings))
+        return critical_friction(cage, 0.6, settings)
 
     benchmark.pedantic(point, rounds=1, warmup_rounds=0)
 

@@ -16,7 +16,7 @@ import matplotlib
 import separatrix
 
 sys.path.insert(0, str(Path(__file__).parent))
-from reference_tables import json_page, quantities_page, study_page
+from reference_tables import credibility_claims, json_page, quantities_page, study_page
 
 matplotlib.use("agg")  # not in the environment: the notebooks draw in their own way
 
@@ -40,7 +40,7 @@ source_suffix = {
     ".ipynb": "myst-nb",
     ".rst": "restructuredtext",
 }  # numpydoc looks for the second
-exclude_patterns = ["_build", "jupyter_execute"]
+exclude_patterns = ["_build", "jupyter_execute", "generated/credibility-claims.md"]  # included in a page
 html_theme = "furo"
 html_title = "separatrix"
 math_number_all = False
@@ -105,10 +105,11 @@ def write_reference(app: Sphinx) -> None:
 
 
 def write_tables(app: Sphinx) -> None:
-    """Write the pages of the keys of a study, of the names in the documents, and of the quantities."""
+    """Write the pages of keys, names in the documents and quantities, and a part of that of credibility."""
     folder = Path(app.srcdir) / "generated"
     (folder / "study-keys.md").write_text(study_page(), encoding="utf-8")
     (folder / "json-names.md").write_text(json_page(), encoding="utf-8")
+    (folder / "credibility-claims.md").write_text(credibility_claims(), encoding="utf-8")
     (folder / "nomenclature.md").write_text(quantities_page(), encoding="utf-8")
 
 

@@ -24,6 +24,7 @@ from separatrix.study.ball_bearing import Material
 from separatrix.study.template import keys_in, remark_of, sections, study_keys
 from separatrix.verbs import cage_answers, chain_answers
 from separatrix.verbs.compare import Row
+from separatrix.verbs.parts.credibility_blocks import FACTORS, claims
 from separatrix.verdict.swept_cases import Duty, Sweep, WorstCase
 
 KEYS = """# Keys of a study
@@ -336,6 +337,24 @@ def quantities_page() -> str:
         cells = (_cell(symbols), f"`{name}`", units_of_name(name, known), _cell(label), _cell(meaning))
         page.append(f"| {' | '.join(cells)} |")
     return "\n".join([*page, ""])
+
+
+def credibility_claims() -> str:
+    """Return the claimed levels of each part of the program, with what they rest on and what is missing."""
+    page: list[str] = []
+    for part in claims():
+        page += [
+            f"### {part['name']}\n",
+            f"{part['covers']}\n",
+            "| factor | level | rests on | for the next level |",
+        ]
+        page += ["|---|---|---|---|"]
+        page += [
+            f"| {words} | {one['level']} | {one['evidence']} | {one['missing']} |"
+            for words, one in ((words, part[key]) for key, words in FACTORS.items())
+        ]
+        page.append("")
+    return "\n".join(page)
 
 
 def units_of_name(name: str, known: Mapping[str, list[Line]]) -> str:

@@ -43,9 +43,10 @@ _PUBLIC = {
     "present.dataset": "dataset",
     "verbs.answer_files": "document",
     "verdict.stability_curve": "StabilityCurve critical_friction restitution_threshold stability_curve",
-    "study.study": "BallBearing BallModel CageDesign Candidate ContactPressure Film Friction Guidance "
-    "KinematicModel Kinematics Material MotionModel Operation PocketContact PocketShape PressureSlip Race "
-    "RankingQuestion StabilitySettings Study TractionModel TractionSettings Wear Worn shipped_studies",
+    "study.study": "Arrangement BallBearing BallModel CageDesign Candidate ContactPressure Film Friction "
+    "Guidance KinematicModel Kinematics Material MotionModel Operation PocketContact PocketShape PreloadKind "
+    "PressureSlip Race RankingQuestion StabilitySettings Study TractionModel TractionSettings Wear Worn "
+    "shipped_studies",
     "verdict.judgement": "Judgement Verdict judge wilson_interval",
     "verdict.reasons": "CageMotion",
     "study.reading": "read_study",

@@ -70,7 +70,7 @@ def found(radial_load=0.0, **cage):
     operation = replace(STUDY.operation, radial_load=radial_load)
     solution = solve(replace(STUDY, operation=operation, cage=replace(STUDY.cage, land_width=0.0, **cage)))
     moving = moving_cage(solution, 0.1)
-    return moving, effects_on(solution, moving)
+    return moving, dict(effects_on(solution, moving))
 
 
 def test_what_a_study_does_not_state_is_no_effect():
@@ -89,7 +89,7 @@ def test_the_fluid_of_a_land_is_put_in_where_it_counts(width, count):
     """A long annulus of liquid nitrogen weighs as the cage does; a short one less than a twentieth of it."""
     solution = solve(replace(STUDY, cage=replace(STUDY.cage, land_width=width)))
     cage = moving_cage(solution, 0.1)
-    effects = effects_on(solution, cage)
+    effects = dict(effects_on(solution, cage))
     assert len(effects) == count
     radius = cage.land_radius or cage.pitch_radius
     mass = cage.land_count * annulus_mass(808.0, radius, width, 0.5 * cage.land_clearance)

@@ -19,6 +19,7 @@ from separatrix.verdict.life_table import Node, _accelerated, _bearing_wear, _dr
 from separatrix.verdict.wear_life import (
     THICKEST,
     BearingWear,
+    Land,
     LifeTable,
     Phase,
     Worn,
@@ -119,6 +120,10 @@ TABLE = LifeTable(
     steepness=30.0 * FLAT,
     calm_sliding=2.0 * FLAT,
     whirl_sliding=200.0 * FLAT,
+    calm_land_sliding=1.0 * FLAT,
+    whirl_land_sliding=1.0 * FLAT,
+    land_exponent=-1.0,
+    land_widening=1.5,
 )
 """Critical friction falls as one over race friction: 0.4 at 0.05."""
 
@@ -166,6 +171,23 @@ def test_pockets_open_by_what_slides_in_them(friction, sliding):
     assert found.volume[-1, 0] == pytest.approx(volume, rel=1e-6)  # P(unstable) is 1e-9 from 0 or 1
     depth = math.sqrt(volume / 20.0 / (math.pi * 5e-3))
     assert found.clearance[-1, 0] == pytest.approx(3e-4 + 2.0 * depth, rel=1e-6)
+
+
+def test_a_land_opens_all_around_and_takes_the_critical_friction_with_it():
+    """2 K N v t over its area; a critical friction of 0.02 over race friction falls with it."""
+    bearing = replace(BEARING, land=Land(area=1e-3, clearance=2e-4))
+    phases = [replace(PHASE[0], bearing=bearing)]
+    draws = worn(cage_wear=1e-12, pocket_friction=0.3, worn_friction=0.3)
+    found = course(phases, draws, 1e5)
+    assert found.land_clearance[-1, 0] == pytest.approx(2e-4 + 2.0 * 1e-12 * 1e5 / 1e-3, rel=1e-6)
+    ends = lives(found)
+    race = 0.05 + 0.35 * math.exp(-5.0)
+    time = (0.02 / race / 0.3 - 1.0) * 2e-4 * 1e-3 / 2.0 / 1e-12
+    assert ends[0] == pytest.approx(time, rel=0.16)  # a step of slow time
+    why = causes(found, phases, draws, ends)
+    assert why.land_opened[0] == pytest.approx(math.log(0.02 / race / 0.3), abs=0.16)
+    assert why.film_worn[0] == pytest.approx(math.log(race / 0.05), rel=1e-6)
+    assert why.pocket_opened[0] == pytest.approx(0.0, abs=1e-9)
 
 
 def test_a_worn_pocket_goes_over_to_its_friction():
@@ -229,11 +251,13 @@ def test_a_test_at_the_speed_of_the_mission_stands_for_itself():
     """An hour is an hour, of films and pockets; half of the passes stand for half of it."""
     solution = solve(separatrix.read_study("cryogenic-turbopump"))
     phase = Phase(share=1.0, bearing=_bearing_wear(solution), table=TABLE)
-    found = _accelerated(solution, Node(0.2, 30.0, 2.0, 200.0), [phase], worn())
+    found = _accelerated(solution, Node(0.2, 30.0, (2.0, 200.0), (0.0, 0.0)), [phase], worn())
     assert (found.film_time, found.pocket_time) == pytest.approx((1.0, 1.0), rel=1e-12)
     assert found.probability_stable == pytest.approx(1.0, abs=1e-6)
     twice = [replace(phase, share=2.0)]
-    assert _accelerated(solution, Node(0.2, 30.0, 2.0, 200.0), twice, worn()).film_time == pytest.approx(0.5)
+    assert _accelerated(
+        solution, Node(0.2, 30.0, (2.0, 200.0), (0.0, 0.0)), twice, worn()
+    ).film_time == pytest.approx(0.5)
 
 
 @pytest.mark.parametrize(

@@ -14,7 +14,7 @@ from cages import SMALL as CAGE
 from separatrix.cage import linear_critical_friction, run_ensemble
 from separatrix.cage.closed_forms import drift_rate_law
 from separatrix.study.study import Guidance, StabilitySettings
-from separatrix.verdict.crossing import GrowthCounter, cage_at
+from separatrix.verdict.crossing import cage_at
 from separatrix.verdict.judgement import wilson_interval
 from separatrix.verdict.long_jobs import Runner
 from separatrix.verdict.stability_curve import (
@@ -31,9 +31,9 @@ SETTINGS = StabilitySettings(kicks=(0.5,), reference_kick=0.5, runs=32, duration
 @pytest.fixture(scope="module")
 def points():
     """Critical frictions from 0 to 1, where they are wanted."""
-    counter, factors = GrowthCounter(CAGE, SETTINGS, Runner(jobs=2)), threshold_factors(SETTINGS)
-    return Runner(jobs=2).work_out(
-        lambda eta: critical_friction(CAGE, eta, SETTINGS, counter=counter, band=False),
+    runner, factors = Runner(jobs=2), threshold_factors(SETTINGS)
+    return runner.work_out(
+        lambda eta: critical_friction(CAGE, eta, SETTINGS, runner=runner, band=False),
         factors,
         into=lambda found: [found[eta] for eta in factors],
     )

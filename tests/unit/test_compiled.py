@@ -6,15 +6,24 @@ import shutil
 import subprocess
 import sys
 import time
+import zipfile
 from pathlib import Path
 
 import pytest
 
 import separatrix
 from separatrix.ground import compiled
-from separatrix.ground.compiled import UNUSED, cache_folder, source_stamp
+from separatrix.ground.compiled import (
+    TARGET,
+    UNUSED,
+    VERSIONS,
+    cache_folder,
+    shipped_folder,
+    source_stamp,
+)
 
 PACKAGE = Path(separatrix.__file__).parent
+ROOT = PACKAGE.parents[1]
 
 SOME_KERNELS = """
 import json
@@ -116,6 +125,43 @@ def test_where_no_folder_can_be_written_nothing_is_cached(tmp_path, monkeypatch)
     (tmp_path / "file").write_text("")
     monkeypatch.setitem(compiled.CONFIG, "CACHE_DIR", str(tmp_path / "file"))
     assert cache_folder(PACKAGE) is None
+
+
+def test_kernels_that_came_with_the_package_are_used_where_they_fit(tmp_path, monkeypatch):
+    """Not on a CPU that lacks an instruction, nor with other sources or versions: the reason names which."""
+    package = _package(tmp_path / "pack", ground__compiled="")
+    assert shipped_folder(package) == (None, "")
+    there = package / "kernels" / f"{VERSIONS}-{source_stamp(package)}"
+    there.mkdir(parents=True)
+    monkeypatch.setattr(compiled, "NEEDED", ())
+    assert shipped_folder(package) == (there, "")
+    monkeypatch.setattr(compiled, "NEEDED", ("an-abacus",))
+    assert shipped_folder(package) == (None, "the kernels of the package need a CPU with an-abacus")
+    monkeypatch.setattr(compiled, "NEEDED", ())
+    there.rename(there.with_name("cpython-39-numba-0.1"))
+    assert shipped_folder(package)[1].startswith("the kernels of the package are for cpython-39-numba-0.1, ")
+
+
+@pytest.mark.slow
+def test_a_wheel_with_kernels_compiles_nothing_where_it_is_unpacked(tmp_path):
+    """Two kernels for another CPU than this one, from another path: loaded, and the same numbers."""
+    place = {"HOME": str(tmp_path), "XDG_CACHE_HOME": str(tmp_path / "user")}
+    target = {"NUMBA_CPU_NAME": TARGET, "NUMBA_CPU_FEATURES": "", "NUMBA_CACHE_DIR": str(tmp_path)}
+    made = _answer(_start(SOME_KERNELS, PYTHONPATH=str(PACKAGE.parent), **place | target))
+    kernels = tmp_path / f"{VERSIONS}-{source_stamp(PACKAGE)}"
+    (tmp_path / f"separatrix-kernels-{source_stamp(PACKAGE)}").rename(kernels)
+    build = [sys.executable, "-m", "hatchling", "build", "-t", "wheel", "-d", str(tmp_path)]
+    environment = os.environ | {"SEPARATRIX_KERNELS": str(kernels)}
+    subprocess.run(build, cwd=ROOT, env=environment, check=True, capture_output=True)
+    (wheel,) = tmp_path.glob("*.whl")
+    python = f"cp{sys.version_info[0]}{sys.version_info[1]}"
+    assert f"-{python}-{python}-" in wheel.name
+    with zipfile.ZipFile(wheel) as archive:
+        archive.extractall(tmp_path / "site")
+    values, hits, misses = _answer(_start(SOME_KERNELS, PYTHONPATH=str(tmp_path / "site"), **place))
+    assert (values, hits, misses) == (made[0], 2, 0)
+    (about,) = (tmp_path / "site").glob("*.dist-info/METADATA")
+    assert "Requires-Dist: numba<=" in about.read_text()
 
 
 @pytest.mark.slow

@@ -128,7 +128,7 @@ def test_a_kick_that_plainly_settles_more_is_not_run_further():
 def test_a_kick_that_is_left_out_leaves_every_column_of_runs_in_space(monkeypatch):
     """The second block runs the worst kick alone; columns that only space has are as long as the others."""
 
-    def ensemble(_case, kicks, places, _runner, **_):
+    def ensemble(_case, kicks, places, *_):
         columns = {f.name: np.zeros((len(kicks), len(places))) for f in fields(Ensemble)}
         return Ensemble(**columns | {"kicks": np.array(kicks), "duration": 0.1})
 

@@ -32,6 +32,7 @@ from separatrix.verdict.ranking_records import (
     margin_interval,
     may_be_lower,
     measured,
+    meet,
     overall,
     ranks,
     safety_interval,
@@ -85,7 +86,7 @@ def ranked(name, stiffness, eta, threshold, half):
 )
 def test_ties_share_the_lowest_rank(thresholds):
     """Two overlap; the third does not reach the first and leads its own group."""
-    assert ranks(thresholds) == [1, 1, 3]
+    assert ranks(thresholds, lambda i, leader: meet(thresholds[i], thresholds[leader])) == [1, 1, 3]
 
 
 @pytest.mark.parametrize("interval", [margin_interval, safety_interval])

@@ -1,4 +1,4 @@
-"""Counting, crossing and inverting, without any cage: a counter that knows its probabilities."""
+"""Counting, crossing and inverting, without any cage: counts that know their probabilities."""
 
 import math
 import re
@@ -18,11 +18,11 @@ from separatrix.verdict.crossing import (
     LADDER,
     Count,
     Crossing,
-    GrowthCounter,
     Response,
     Side,
     cage_at,
     cell_of,
+    responses,
 )
 from separatrix.verdict.long_jobs import Runner
 from separatrix.verdict.stability_curve import (
@@ -76,41 +76,39 @@ def test_the_interval_shrinks_with_the_root_of_the_runs():
     assert width(64) / width(1024) == pytest.approx(4.0, rel=0.3)
 
 
-def known_counter(cage, settings, seed):
-    """Counter of a known probability, whatever the cage: binomial luck, the same for the same runs."""
-    counter = GrowthCounter(cage, settings)
+def known_responses(seed):
+    """Counts of a known probability, whatever the cage: binomial luck, the same for the same runs."""
 
-    def count(_, friction, __, *, first_run, runs):
+    def look(friction, first_run, runs):
         numbers = np.random.default_rng((seed, round(1e9 * friction), first_run))
         return Count(int(numbers.binomial(runs, logistic(0.12, 8.0)(friction))), runs)
 
-    counter.count = count
-    return counter
+    return lambda _cage, settings, kicks, _runner: {kick: Response(look, settings.runs) for kick in kicks}
 
 
-def test_the_band_goes_from_a_tenth_that_grow_to_nine_tenths():
+def test_the_band_goes_from_a_tenth_that_grow_to_nine_tenths(monkeypatch):
     """Where algebra says: the mean of 16, each good to 6 %, lies within 4 %; a fifth would be 10 % off."""
-    cage = CAGE
-    settings = StabilitySettings(kicks=(0.5,), runs=256)
-    counters = [known_counter(cage, settings, seed) for seed in range(16)]
-    found = [critical_friction(cage, 0.5, settings, counter=one) for one in counters]
+    settings, found = StabilitySettings(kicks=(0.5,), runs=256), []
+    for seed in range(16):
+        monkeypatch.setattr(stability_curve, "responses", known_responses(seed))
+        found.append(critical_friction(CAGE, 0.5, settings))
     for end, at in (("_low", 0.12 / 9 ** (1 / 8)), ("", 0.12), ("_high", 0.12 * 9 ** (1 / 8))):
         mean = np.mean([getattr(point, f"critical_friction{end}") for point in found])
         assert mean == pytest.approx(at, rel=0.04)
 
 
-def at_three_kicks(*probabilities):
+def at_three_kicks(monkeypatch, *probabilities):
     """Critical friction where the probability of each kick is known: 0.2, 0.5 and 1 m/s."""
-    cage, kicks = CAGE, (0.2, 0.5, 1.0)
+    kicks = (0.2, 0.5, 1.0)
     settings = StabilitySettings(kicks=kicks, reference_kick=0.5, runs=256)
-    counter, looks = GrowthCounter(cage, settings), [response(known) for known in probabilities]
-    counter.count = lambda _, f, kick, *, first_run, runs: looks[kicks.index(kick)]._look(f, first_run, runs)
-    return critical_friction(cage, 0.5, settings, counter=counter)
+    known = {kick: response(one, 256) for kick, one in zip(kicks, probabilities, strict=True)}
+    monkeypatch.setattr(stability_curve, "responses", lambda *_: known)
+    return critical_friction(CAGE, 0.5, settings)
 
 
-def test_the_runs_of_an_end_go_to_the_kick_that_sets_it():
+def test_the_runs_of_an_end_go_to_the_kick_that_sets_it(monkeypatch):
     """Kicks a factor of two apart, logistic alike: intervals of both ends are alike."""
-    point = at_three_kicks(*(logistic(middle, 8.0) for middle in (0.24, 0.12, 0.06)))
+    point = at_three_kicks(monkeypatch, *(logistic(middle, 8.0) for middle in (0.24, 0.12, 0.06)))
     assert point.low_scatter_low < 0.06 / 9 ** (1 / 8) < point.low_scatter_high
     assert point.high_scatter_low < 0.24 * 9 ** (1 / 8) < point.high_scatter_high
     lower = point.low_scatter_high / point.low_scatter_low
@@ -136,9 +134,9 @@ USUAL = logistic(0.12, 8.0)
         ),
     ],
 )
-def test_one_kick_without_a_tenth_or_nine_leaves_the_band_without_that_end(kicks, end, reason):
+def test_one_kick_without_a_tenth_or_nine_leaves_the_band_without_that_end(monkeypatch, kicks, end, reason):
     """It grows without friction, or never: whatever the others do, the band has no lower, or upper, end."""
-    point = at_three_kicks(*kicks)
+    point = at_three_kicks(monkeypatch, *kicks)
     assert point.critical_friction is not None
     names = (f"critical_friction_{end}", f"{end}_scatter_low", f"{end}_scatter_high")
     assert [getattr(point, name) for name in names] == [None] * 3
@@ -224,8 +222,7 @@ def test_unresolved_runs_are_told(monkeypatch):
     found.outcome[0] = (RunOutcome.WHIRLS, *[RunOutcome.UNRESOLVED] * 4)
     found.cause[0] = (Cause.NONE, Cause.NOT_FINITE, Cause.NO_CONTACT, Cause.FALLING, Cause.LEFT_POCKET)
     monkeypatch.setattr(runner.Runner, "ensemble", lambda *_, **__: found)
-    counter = GrowthCounter(cage, StabilitySettings())
-    count = counter.count(0.5, 0.1, 0.5, first_run=0, runs=5)
+    count = responses(cage, StabilitySettings(), (0.5,), Runner())[0.5].add(cell_of(0.1), 5)
     assert (count.whirling, count.runs) == (2, 5)
     (note,) = count.notes
     assert re.search(r"2 of 5 runs from 0.5 m/s at friction 0.1 .* not whirling", note)

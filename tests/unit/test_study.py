@@ -108,6 +108,9 @@ def test_every_line_that_is_off_in_the_template_can_be_switched_on(read):
     beside = {
         "elastic_modulus": "poisson_ratio = 0.38",
         "ramp_start": 'ramp_time = "50 ms"',
+        "preload": 'arrangement = "single"',
+        "arrangement": 'preload = "28 N"',
+        "preload_kind": 'preload = "28 N"\narrangement = "face-to-face"',
         "worn_pocket_friction": 'worn_pocket_depth = "10 um"',
         "worn_pocket_depth": "worn_pocket_friction = 0.3",
         "pocket_axial_clearance": 'pocket_shape = "elongated"',
@@ -179,6 +182,10 @@ VARIANTS = [
     ),
     ('[bearing]\nradial_clearance = "20 um"', lambda s: s.bearing.free_angle < 0.25),
     ('[operation]\ntilt = "1 mrad"', lambda s: s.operation.tilt == 1e-3),
+    (
+        '[operation]\npreload = "40 N"\narrangement = "face-to-face"',
+        lambda s: s.operation.is_pair and s.operation.axial_load is None,
+    ),
     ('[film]\nelastic_modulus = "2 GPa"\npoisson_ratio = 0.4', lambda s: s.film.body.elastic_modulus == 2e9),
     ('[film]\nmaterial = "MoS2 sputtered dense"', lambda s: s.film.body.elastic_modulus == 136e9),
     ('[cage]\nguidance = "ball"', lambda s: s.cage.land_clearance is None and s.cage.mass == 0.025),
@@ -282,7 +289,8 @@ def test_the_page_on_study_files_is_complete_and_its_examples_are_right(read):
     listed = {word.strip() for one in rows for word in one.split(",")}
     assert {unit for known in UNITS.values() for unit in known} <= listed
     blocks = [block.partition("```")[0] for block in page.split("```toml\n")[1:]]
-    variant, catalogue, wear, candidate = blocks
+    variant, catalogue, preload, wear, candidate = blocks
+    assert read(f'extends = "momentum-wheel"\n{preload}').operation.is_pair
     assert read(BASE + wear).film.wear.width == pytest.approx(2e-4)
     assert read(variant).operation.axial_load == 1500.0
     assert read(f'extends = "ball-218"\n{catalogue}').bearing.ball_diameter == 0.003969

@@ -77,6 +77,15 @@ ball_material = "440C" => ball_material = "404C"
 "300 daN" => "0 N" :: [operation] axial_load ; nothing presses the balls
 axial_load = "300 daN" => axial_load = "300 daN"\nmoment = "1 N m"\ntilt = "1 mrad"
     :: [operation] tilt and moment exclude each other
+axial_load = "300 daN"\n =>  :: [operation] axial_load is missing ; or preload and arrangement.
+axial_load = "300 daN" => preload = "300 daN" :: [operation] arrangement is missing ; preload, arrangement
+axial_load = "300 daN" => axial_load = "300 daN"\npreload_kind = "spring"
+    :: [operation] preload_kind has a meaning only for a pair
+"300 daN" => "300 daN"\npreload = "9 N"\narrangement = "single"\npreload_kind = "rigid"
+    :: [operation] preload_kind has a meaning only for a pair ; back-to-back
+"300 daN" => "300 daN"\npreload = "9 N"\narrangement = "face-to-face"\nradial_load = "1 N"
+    :: [operation] radial_load must be 0 for a pair ; got "1 N" ; loads of one of the two
+"300 daN" => "300 daN"\npreload = "9 N"\narrangement = "tandem" :: [operation] arrangement ; "back-to-back"
 material = "PTFE transfer film"\n =>  :: [film] material is missing
 "0.6 mm" => "5 mm"
     :: [cage] pocket_clearance must be smaller than the gap between balls, 4.443 mm ; got "5 mm"

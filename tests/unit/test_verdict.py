@@ -18,7 +18,7 @@ from separatrix.chain.ball_traction import BallTraction, FreeBall, SlipField
 from separatrix.study.study import BallModel, Guidance, MotionModel, PocketShape
 from separatrix.verdict import judgement
 from separatrix.verdict.judgement import ENDS, KickCount, Verdict, judge, wilson_interval
-from separatrix.verdict.ranking_records import ranks
+from separatrix.verdict.ranking_records import meet, ranks
 from separatrix.verdict.reasons import CageMotion, force_limit
 
 GUIDED = replace(CAGE, cage_speed=670.0, guidance=Guidance.OUTER, land_clearance=4e-4)
@@ -468,10 +468,15 @@ threshold = st.tuples(st.floats(0, 1), st.floats(0, 0.2), st.floats(0, 0.2)).map
 thresholds = st.lists(threshold, max_size=8)
 
 
+def ranks_of(given_ones):
+    """Ranks of thresholds of which those are tied whose intervals meet."""
+    return ranks(given_ones, lambda i, leader: meet(given_ones[i], given_ones[leader]))
+
+
 @given(thresholds)
 def test_ranks_follow_thresholds_are_shared_and_then_skipped(given_ones):
     """Each rank is one more than the number of candidates ranked better: 1, 1, 3, never 1, 1, 2."""
-    found = ranks(given_ones)
+    found = ranks_of(given_ones)
     assert len(found) == len(given_ones)
     assert all(rank == 1 + sum(other < rank for other in found) for rank in found)
     pairs = [(t[0], rank) for t, rank in zip(given_ones, found, strict=True)]
@@ -483,7 +488,7 @@ def test_the_order_of_the_candidates_does_not_matter(given_ones, random):
     """Shuffled candidates keep their ranks, if no two have the same threshold and different scatter."""
     order = list(range(len(given_ones)))
     random.shuffle(order)
-    shuffled = ranks([given_ones[i] for i in order])
+    shuffled = ranks_of([given_ones[i] for i in order])
     values = [t[0] for t in given_ones]
     if len(set(values)) == len(values):
-        assert shuffled == [ranks(given_ones)[i] for i in order]
+        assert shuffled == [ranks_of(given_ones)[i] for i in order]

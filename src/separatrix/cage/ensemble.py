@@ -104,9 +104,7 @@ class Ensemble:
         return np.asarray(np.count_nonzero(self.outcome == one, axis=1), dtype=np.int64)
 
 
-WHOLE_NUMBERS = ("outcome", "cause", "whirl_direction", "pocket_impacts", "land_impacts", "left_ball")
 BY_BALL = ("pocket_impacts", "pocket_rubbing")
-SPACE_ONLY = ("largest_tilt", "cone_speed", "axial_low", "axial_high")
 
 
 class Piece(NamedTuple):

@@ -70,6 +70,11 @@ class SlipField:
     heathcote: MetrePerSecond  # slip of the ellipse's ends against its middle, as the pressed surface curves
     elastic_slip: MetrePerSecond  # slip that elastic creep makes of full friction
 
+    def stiffened(self, ratio: float) -> SlipField:
+        """Return the race that has the same tractions at slips this many times smaller."""
+        slips = ("slip", "pivoting", "heathcote", "elastic_slip")
+        return replace(self, **{name: getattr(self, name) / ratio for name in slips})
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FreeBall:
@@ -85,6 +90,11 @@ class FreeBall:
     def capacity(self) -> Newton:
         """Largest force that both races hold, f_BT (Q_i + Q_o) [N]."""
         return self.inner.limit + self.outer.limit
+
+    def stiffened(self, ratio: float) -> FreeBall:
+        """Return the ball between races that have the same tractions at slips this many times smaller."""
+        races = {name: getattr(self, name).stiffened(ratio) for name in ("inner", "outer")}
+        return replace(self, **races, fastest_rate=self.fastest_rate * ratio)
 
     def __post_init__(self) -> None:
         if not all(

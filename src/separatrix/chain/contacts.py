@@ -21,6 +21,7 @@ from separatrix.chain.equilibrium import Equilibrium, contact, equilibrium
 from separatrix.chain.grooved_ball import LEAST_SHARE
 from separatrix.chain.heat_balance import HeatBalance
 from separatrix.chain.hertz import ContactEllipse
+from separatrix.chain.preloaded_pair import PairLoads
 from separatrix.chain.race_traction import SLOPE_ALONE, RaceTrack, contact_traction
 from separatrix.chain.traction_curve import TractionCurve
 from separatrix.ground.errors import InputError
@@ -69,6 +70,9 @@ class BearingState:
 
     heat: HeatBalance | None = None
     """With the fluid; only in the answer of `bearing`, without the friction of the cage."""
+
+    pair: PairLoads | None = None
+    """Loads of a preloaded pair; only in the answer of `bearing`."""
 
     @property
     def cage_speed(self) -> RadianPerSecond:

@@ -137,23 +137,8 @@ def equilibrium(
     Each ball balances its two Hertz contacts, its centrifugal force and its gyroscopic moment; the inner ring
     balances axial and radial load, and is held parallel or at `operation.tilt` or balances a given moment.
 
-    Parameters
-    ----------
-    bearing : BallBearing
-        Geometry and materials; the ball material needs a density unless the speeds are 0.
-    operation : Operation
-        Speeds and loads on the inner ring.
-    model : KinematicModel
-        How the spin axis of a ball is found.
-    race_friction : float
-        Coulomb friction of ball on race, > 0 in the free model and unused in the others [-].
-    cross_moment : float
-        Moment about the direction of the radial load [N m]; with one the inner ring tilts freely.
-
-    Returns
-    -------
-    Equilibrium
-        Per ball, shape (ball,), and for the ring.
+    The friction of ball on race is > 0 in the free model and unused in the others [-]. With a `cross_moment`
+    about the direction of the radial load [N m] the inner ring tilts freely.
 
     Raises
     ------
@@ -274,7 +259,7 @@ class _Place(NamedTuple):
 def _ring(bearing: BallBearing, operation: Operation, p: Problem, cross_moment: NewtonMetre) -> _Ring:
     """Collect the loads; one ball represents all where load and ring make them alike."""
     Z, arm = bearing.ball_count, 0.5 * p.pitch_diameter
-    forces = operation.axial_load, operation.radial_load, 0.0
+    forces = operation.axial_load or 0.0, operation.radial_load, 0.0
     loads = np.array((*forces, cross_moment / arm, -(operation.moment or 0.0) / arm), dtype=float)
     tilt = float(operation.tilt or 0.0)
     held = operation.tilt is not None or (operation.is_tilt_held and cross_moment == 0.0)

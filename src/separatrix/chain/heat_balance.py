@@ -96,13 +96,13 @@ def cylinder_moment(fluid: Fluid, radius: Metre, width: Metre, speed: RadianPerS
 
 
 class Temperatures(NamedTuple):
-    """Steady temperatures of the parts, and of the coolant as it leaves."""
+    """Steady temperatures of the parts, and of the coolant as it leaves; none without a flow."""
 
-    inner_ring: Kelvin
-    balls: Kelvin
-    outer_ring: Kelvin
-    cage: Kelvin | None
-    coolant_out: Kelvin
+    inner_ring_temperature: Kelvin | None = None
+    ball_temperature: Kelvin | None = None
+    outer_ring_temperature: Kelvin | None = None
+    cage_temperature: Kelvin | None = None
+    coolant_out_temperature: Kelvin | None = None
 
 
 class Heat(NamedTuple):
@@ -190,7 +190,7 @@ def heat_balance(
         cage=0.5 * (pocket_power + land_power),
         fluid=in_fluid,
     )
-    known = temperatures(heat, cooling, cooling.flow, capacity, at) if cooling.flow else None
+    known = temperatures(heat, cooling, cooling.flow, capacity, at) if cooling.flow else Temperatures()
     races = ((state.inner, -1.0, inner), (state.outer, 1.0, outer))
     tracks = [heat / track_area(bearing, one.ellipse, one.contact_angle, side) for one, side, heat in races]
     limit = boiling_limit(study, at)
@@ -208,18 +208,14 @@ def heat_balance(
         ball_drag_power=drag_power,
         spin_power=spin_power,
         cage_drag_power=faces,
-        inner_ring_temperature=known.inner_ring if known else None,
-        ball_temperature=known.balls if known else None,
-        outer_ring_temperature=known.outer_ring if known else None,
-        cage_temperature=known.cage if known else None,
-        coolant_out_temperature=known.coolant_out if known else None,
+        **known._asdict(),
         flash_inner=flash_inner,
         flash_outer=flash_outer,
         track_heat=max(tracks),
         boiling_limit=limit,
         notes=(
             *_beyond(fluid, D, R * abs(orbit - cooling.swirl * ring), max(tracks), limit, study),
-            *(_warmer(study, at, known.coolant_out) if known else ()),
+            *_warmer(study, at, known.coolant_out_temperature),
         ),
     )
 
@@ -279,9 +275,9 @@ def boiling_limit(study: Study, temperature: Kelvin) -> WattPerMetre2 | None:
     return float(0.131 * latent * math.sqrt(vapour) * (tension * GRAVITY * (liquid - vapour)) ** 0.25)
 
 
-def _warmer(study: Study, inlet: Kelvin, outlet: Kelvin) -> Iterator[str]:
+def _warmer(study: Study, inlet: Kelvin, outlet: Kelvin | None) -> Iterator[str]:
     """Yield that a coolant leaves warmer than its properties reach; a liquid would boil before."""
-    if outlet > (1.0 + NEAR) * inlet:
+    if outlet is not None and outlet > (1.0 + NEAR) * inlet:
         leaves, enters = (format_quantity(one, "K", 4) for one in (outlet, inlet))
         is_liquid = fluid_property(study, "latent_heat", inlet) is not None
         boils = " At 1 atm it boils before that." if is_liquid else ""

@@ -38,8 +38,6 @@ NEAR: Ratio = 0.15
 class LandFluid:
     """Fluid in the gaps of a cage's lands."""
 
-    density: KilogramPerMetre3
-    reynolds_number: Ratio  # of the gap, with the speed against a wall
     added_mass: Kilogram  # that moves with the cage across the axis
     damping: NewtonSecondPerMetre  # of that motion by the walls
 
@@ -78,12 +76,7 @@ def land_fluid(study: Study, design: CageDesign, cage_speed: float) -> LandFluid
     ring = operation.inner_speed if design.guidance is Guidance.INNER else operation.outer_speed
     speed = 0.5 * abs(ring - cage_speed) * radius
     mass = design.land_count * annulus_mass(density, radius, design.land_width, gap)
-    return LandFluid(
-        density=density,
-        reynolds_number=density * speed * gap / viscosity,
-        added_mass=mass,
-        damping=mass * decay_rate(viscosity, density, speed, gap),
-    )
+    return LandFluid(added_mass=mass, damping=mass * decay_rate(viscosity, density, speed, gap))
 
 
 def fluid_property(study: Study, name: str, temperature: float) -> float | None:

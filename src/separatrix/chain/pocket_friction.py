@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from math import acos, acosh, exp, pi, sqrt
 
 import numpy as np
@@ -150,15 +150,7 @@ def friction_in_pocket(
         temperature=operation.temperature,
         medium=media or operation.fluid,
     )
-    return replace(
-        friction,
-        mean=found.mean,
-        standard_error=found.standard_error,
-        standard_deviation=found.standard_deviation,
-        assumed_scatter=found.assumed_scatter,
-        extrapolation=found.extrapolation,
-        widening=found.widening,
-    )
+    return replace(friction, **asdict(found))
 
 
 def with_scatter(friction: Friction, scatter: Ratio) -> Friction:

@@ -43,6 +43,7 @@ from separatrix.chain.pocket_friction import (
     pocket_conditions,
     pocket_speed,
 )
+from separatrix.chain.preloaded_pair import PairLoads, pair_loads, with_axial_load
 from separatrix.ground.errors import InputError
 from separatrix.ground.units import Kilogram, MetrePerSecond, NewtonPerMetre, PerSecond, format_quantity
 from separatrix.study.ball_bearing import NAMELESS
@@ -55,6 +56,7 @@ from separatrix.study.study import (
     ClearanceState,
     Friction,
     Material,
+    Operation,
     PocketShape,
     Study,
 )
@@ -67,7 +69,7 @@ WORN_MOBILITY = (
 NO_CAGE = "Give at least its mass, pocket_clearance, and ball_cage_stiffness or material."
 
 
-SHARED = ("bearing", "traction", "slopes", "clearances", "mobility", "restitution", "inertia")
+SHARED = ("pair", "bearing", "traction", "slopes", "clearances", "mobility", "restitution", "inertia")
 """Links that do not depend on the cage's model."""
 
 
@@ -106,7 +108,10 @@ class Solution:
     @property
     def notes(self) -> tuple[str, ...]:
         """Where the links that were solved leave the range of their model, a sentence each."""
-        links = (vars(self).get(name) for name in ("bearing", "clearances", "traction", "slopes", "mobility"))
+        links = (
+            vars(self).get(name)
+            for name in ("pair", "bearing", "clearances", "traction", "slopes", "mobility")
+        )
         notes = [note for one in links if one is not None for note in one.notes]
         return tuple(dict.fromkeys([*notes, *self._on_a_bore()]))
 
@@ -125,10 +130,33 @@ class Solution:
             )
 
     @cached_property
+    def pair(self) -> PairLoads | None:
+        """Axial loads of a preloaded pair, and notes on its other bearing; None of a single bearing."""
+        asked, at = self.study, self.study.operation
+        if not at.is_pair:
+            return None
+        how = asked.kinematics.model, asked.film.race_friction
+        found = pair_loads(asked.bearing, at, *how)
+        if not 0.0 < found.other_axial_load < found.own_axial_load:
+            return found
+        other = bearing_state(asked.bearing, with_axial_load(at, found.other_axial_load), *how)
+        notes = tuple(f"The other bearing of the pair: {note}" for note in other.notes)
+        return replace(found, notes=(*found.notes, *notes))
+
+    @property
+    def operation(self) -> Operation:
+        """Speeds of the study, and the loads of its one bearing with its share of a preload."""
+        asked = self.study.operation
+        if asked.preload is None:
+            return asked
+        alone = asked.preload + (asked.axial_load or 0.0)
+        return with_axial_load(asked, self.pair.own_axial_load if self.pair else alone)
+
+    @cached_property
     def bearing(self) -> BearingState:
         """Equilibrium, and the contacts of the most loaded ball."""
         asked = self.study
-        return bearing_state(asked.bearing, asked.operation, asked.kinematics.model, asked.film.race_friction)
+        return bearing_state(asked.bearing, self.operation, asked.kinematics.model, asked.film.race_friction)
 
     @cached_property
     def rolling(self) -> Rolling:
@@ -142,7 +170,7 @@ class Solution:
         asked = self.study
         require_rolling(asked)
         _ = self.bearing  # its notes
-        return Rolling(asked.bearing, asked.operation, asked.kinematics.model, asked.film, asked.traction)
+        return Rolling(asked.bearing, self.operation, asked.kinematics.model, asked.film, asked.traction)
 
     @cached_property
     def traction(self) -> RaceTraction:
@@ -327,5 +355,5 @@ class Solution:
         """How much faster a larger ball runs round its orbit, over what its diameter is larger."""
         asked = self.study
         return orbit_by_diameter(
-            asked.bearing, asked.operation, asked.kinematics.model, asked.film.race_friction
+            asked.bearing, self.operation, asked.kinematics.model, asked.film.race_friction
         )

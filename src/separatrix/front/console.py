@@ -197,9 +197,12 @@ class Life(Pace):
 
     def compiling(self) -> None:
         """Say once that kernels are compiled, which the next command finds done."""
+        from separatrix.ground.compiling import COMPILING
+
         if not self.compiled:
             self.compiled = True
-            complain(f"{self.title}: compiling once on this machine, about a minute in all.")
+            why = f": {COMPILING.reason}" if COMPILING.reason else ""
+            complain(f"{self.title}: compiling once on this machine, about a minute in all{why}.")
 
     def line(self) -> str:
         """Return how far the work is after which time."""

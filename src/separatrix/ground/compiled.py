@@ -4,15 +4,17 @@ numba keeps compiled code until the file of the function changes. It does not se
 although a constant or a function of that file may be compiled in. So the code is cached in a folder that is
 named after all that can be compiled in: the versions of Python, numpy and numba, and every file of the
 package that a module with kernels imports, directly or through others. A report or a figure is not one of
-them, so that an edit there compiles nothing again.
+them, so that an edit there compiles nothing again. Nor are the time and the place of a file, so that a wheel
+can carry such a folder (`tools/wheel.py` builds it): its kernels are for `TARGET`, not for the CPU at hand,
+and are loaded from it if they fit, although it cannot be written.
 
 Only kernels that Python calls are cached, with all that they call in one file. numba writes a file under
 another name and then renames it, and a cached kernel has one signature only: processes that compile it at the
 same time write the same file, so that they can share a folder.
 
 Of numba this uses `njit`, its events, the setting CACHE_DIR (the variable NUMBA_CACHE_DIR), and what numba
-does not document: the option `_nrt`, and the methods `_compile_for_args` and `_load_overload`, by which a
-kernel is compiled and loaded.
+does not document: the option `_nrt`, the method `_compile_for_args`, by which a kernel is compiled, and the
+classes and methods of `numba.core.caching`, by which it is kept and loaded.
 """
 
 from __future__ import annotations
@@ -25,7 +27,6 @@ import shutil
 import sys
 import time
 from collections.abc import Callable, Iterator
-from functools import partial
 from pathlib import Path
 from types import FunctionType
 from typing import Any, ParamSpec, TypeVar, cast
@@ -33,9 +34,10 @@ from typing import Any, ParamSpec, TypeVar, cast
 import llvmlite.binding
 import numba
 import numpy as np
+from numba.core import caching
 from numba.core.runtime.nrt import rtsys
 
-from separatrix.ground import compiling  # noqa: F401 - it listens from now on
+from separatrix.ground.compiling import COMPILING
 
 CONFIG = vars(numba.config)
 """Settings of numba: CACHE_DIR is that of the variable NUMBA_CACHE_DIR."""
@@ -48,6 +50,17 @@ R = TypeVar("R")
 
 ROOM = 1 << 17
 """Values for which the interpreter's stack has room while a kernel is compiled: more than it takes."""
+
+TARGET = "x86-64-v3"
+"""CPU for which the kernels of a wheel are compiled, as LLVM names it."""
+
+NEEDED = ("avx2", "bmi", "bmi2", "f16c", "fma", "lzcnt", "movbe")
+"""What a CPU has beyond its forerunners if it is one of `TARGET`, as LLVM names it."""
+
+VERSIONS = (
+    f"{sys.implementation.cache_tag}-numba-{numba.__version__}-numpy-{np.__version__.rpartition('.')[0]}"
+)
+"""Versions for which compiled code is good: numba distinguishes no closer ones of Python and numpy."""
 
 UNUSED = 14 * 86400.0
 """Time after which compiled code of other sources is removed [s]: some days of changing between versions."""
@@ -89,8 +102,8 @@ def _imported(source: bytes) -> Iterator[str]:
 
 
 def source_stamp(package: Path) -> str:
-    """Checksum of `kernel_sources` and of the versions of Python, numpy and numba."""
-    stamp = hashlib.sha256(f"{sys.version} {np.__version__} {numba.__version__}".encode())
+    """Checksum of `kernel_sources` and of `VERSIONS`."""
+    stamp = hashlib.sha256(VERSIONS.encode())
     for path in kernel_sources(package):
         text = path.read_bytes()
         stamp.update(f"{path.relative_to(package).as_posix()} {len(text)} ".encode() + text)
@@ -126,33 +139,89 @@ def _remove_unused(folder: Path) -> None:
                 shutil.rmtree(other, ignore_errors=True)
 
 
-_FOLDER = cache_folder(Path(__file__).parents[1])
+def shipped_folder(package: Path) -> tuple[Path | None, str]:
+    """Folder of the kernels that came with the package, None if there is none that can be used, and why.
+
+    Its name is what it was compiled from: `VERSIONS` and `source_stamp`.
+    """
+    there = next((package / "kernels").glob("*"), None)
+    if there is None:
+        return None, ""
+    has, here = llvmlite.binding.get_host_cpu_features(), f"{VERSIONS}-{source_stamp(package)}"
+    lacking = [feature for feature in NEEDED if not has.get(feature)]
+    if lacking:
+        return None, f"the kernels of the package need a CPU with {', '.join(lacking)}"
+    if there.name != here:
+        return None, f"the kernels of the package are for {there.name}, and this is {here}"
+    return there, ""
+
+
+_PACKAGE = Path(__file__).parents[1]
+_FOLDER = cache_folder(_PACKAGE)
+_SHIPPED, COMPILING.reason = shipped_folder(_PACKAGE)
+
+
+class _Place(caching._CacheLocator):
+    """Where numba keeps a kernel: in the folder that is named after the sources."""
+
+    def __init__(self, function: FunctionType, file: str) -> None:
+        self._function, self._py_file = function, file
+
+    @classmethod
+    def from_function(cls, function: FunctionType, file: str) -> _Place:
+        return cls(function, file)
+
+    def get_cache_path(self) -> str:
+        return str(_FOLDER or "")
+
+    def get_source_stamp(self) -> str:
+        return ""
+
+    def get_disambiguator(self) -> str:
+        return f"{self._function.__module__}-{self._function.__code__.co_firstlineno}"
+
+
+class _Kept(caching.CompileResultCacheImpl):
+    """How numba keeps a kernel there."""
+
+    _locator_classes = [_Place]  # noqa: RUF012 - as numba has it
+
+
+class _Cache(caching.FunctionCache):
+    """What is kept of a kernel: read where it was shipped, else where it can be written."""
+
+    _impl_class = _Kept
+
+    def load_overload(self: Any, signature: object, target: Any) -> Any:
+        """Return the compiled code of a kernel, None if there is none.
+
+        numba would first fill its tables of types and functions, which only compiling needs, and which take
+        longer to fill than all else that a short verb does.
+        """
+        rtsys.initialize(target)
+        if _SHIPPED is not None:
+            _, (triple, *_), code = self._index_key(signature, target.codegen())
+            index: Any = caching.IndexDataCacheFile
+            found = index(str(_SHIPPED), self._impl.filename_base, "").load(
+                (signature, (triple, TARGET, ""), code)
+            )
+            if found is not None:
+                return self._impl.rebuild(target, found)
+        with self._guard_against_spurious_io_errors():
+            return self._load_overload(signature, target)
+
+    def save_overload(self, signature: object, data: object) -> None:
+        """Keep it, where there is a folder to keep it in."""
+        if _FOLDER is not None:
+            super().save_overload(signature, data)  # type: ignore[no-untyped-call]
 
 
 def kernel(function: Callable[P, R]) -> Callable[P, R]:
     """Compile a kernel that Python calls, always with arguments of the same types, and cache it."""
-    usual = CONFIG["CACHE_DIR"]
-    try:
-        CONFIG["CACHE_DIR"] = str(_FOLDER or "")
-        compiled = _compiled(function, cache=_FOLDER is not None)
-    finally:
-        CONFIG["CACHE_DIR"] = usual
-    vars(compiled)["_compile_for_args"] = _with_room(compiled._compile_for_args)  # type: ignore[attr-defined]
-    if _FOLDER is not None:
-        cache = compiled._cache  # type: ignore[attr-defined]
-        cache.load_overload = partial(_loaded, cache)
-    return compiled
-
-
-def _loaded(cache: Any, signature: object, target: object) -> object:
-    """Return the cached code of a kernel, None if there is none.
-
-    numba would first fill its tables of types and functions, which only compiling needs, and which take
-    longer to fill than all else that a short verb does.
-    """
-    rtsys.initialize(target)
-    with cache._guard_against_spurious_io_errors():
-        return cast(object, cache._load_overload(signature, target))
+    compiled: Any = _compiled(function)
+    vars(compiled)["_compile_for_args"] = _with_room(compiled._compile_for_args)
+    compiled._cache = _Cache(function)  # type: ignore[no-untyped-call]
+    return cast(Callable[P, R], compiled)
 
 
 def _with_room(function: Callable[P, R]) -> Callable[P, R]:

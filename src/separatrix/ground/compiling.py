@@ -16,6 +16,7 @@ class Compiling(event.Listener):
 
     def __init__(self) -> None:
         self.heard: list[Callable[[], None]] = []
+        self.reason = ""  # why the kernels that came with the package are not used; empty if none came
         self._depth, self._collects = 0, True
         self._seconds, self._begun = 0.0, 0.0
 

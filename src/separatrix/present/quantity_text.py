@@ -236,8 +236,8 @@ QUANTITIES: dict[str, Quantity] = {
 }
 
 SHARES = (
-    *("unstable_at_start", "never_unstable", "film_worn", "pocket_opened", "friction_risen"),
-    *("reservoir_empty", "film_sustained"),
+    *("unstable_at_start", "never_unstable", "film_worn", "pocket_opened", "land_opened"),
+    *("friction_risen", "reservoir_empty", "film_sustained"),
 )
 """Shares of drawn bearings."""
 

@@ -17,7 +17,9 @@ from separatrix.ground.errors import InputError
 from separatrix.ground.schema import (
     Fault,
     Faults,
+    Only,
     Spelled,
+    all_or_none,
     between,
     check,
     key,
@@ -97,18 +99,55 @@ class Kinematics:
     """Without race control it is "free"."""
 
 
+class Arrangement(Spelled):
+    """What a preload presses: the bearing alone, or it and its twin on the same shaft."""
+
+    SINGLE = "single"
+    BACK_TO_BACK = "back-to-back"
+    FACE_TO_FACE = "face-to-face"
+
+
+class PreloadKind(Spelled):
+    """What keeps the preload of a pair: the position of its rings, or a spring."""
+
+    RIGID = "rigid"
+    SPRING = "spring"
+
+
+_PAIR = Only(
+    "arrangement",
+    (Arrangement.BACK_TO_BACK, Arrangement.FACE_TO_FACE),
+    "has a meaning only for a pair of bearings",
+    'Give a preload and arrangement = "back-to-back" or "face-to-face", or leave it out.',
+)
+
+
 @record
 class Operation:
     """Speeds and loads on the inner ring.
 
     The rings are held parallel, or at the angle `tilt`. With a `moment`, 0 included, the inner ring tilts
-    until the balls balance it.
+    until the balls balance it. With a `preload` the other loads are external: those of the shaft.
     """
 
-    RULES: ClassVar = (one_of("moment", "tilt"),)
+    RULES: ClassVar = (one_of("moment", "tilt"), all_or_none("preload", "arrangement"))
+    REPLACED: ClassVar = {"preload": ("axial_load",)}
 
     inner_speed: RadianPerSecond = key(between(-1e6, 1e6), example='"15000 rpm"')
-    axial_load: Newton = key(not_negative(1e9), hint=_LIFTS, example='"300 daN"')
+    axial_load: Newton | None = key(
+        not_negative(1e9), default=None, hint=_LIFTS, example='"300 daN"', without="0 N with a preload"
+    )
+    """With a preload the external load of the shaft, which presses this bearing of a pair."""
+
+    preload: Newton | None = key(positive(1e-3, 1e9), default=None, without="not given: axial_load alone")
+    """Axial load of each bearing at rest without external load."""
+
+    arrangement: Arrangement | None = key(default=None, without="not given: there is no preload")
+    """Of the pair, or "single" for one bearing that the preload presses as axial_load does."""
+
+    preload_kind: PreloadKind | None = key(default=None, only=(_PAIR,), without='not given; default "rigid"')
+    """A "rigid" pair keeps the distance of its rings, a "spring" its force on the other bearing."""
+
     outer_speed: RadianPerSecond = key(between(-1e6, 1e6), default=0.0)
     radial_load: Newton = key(
         not_negative(1e9), default=0.0, hint="Its direction is the x axis: give its size."
@@ -141,15 +180,34 @@ class Operation:
         """Whether the housing and shaft hold the rings at an angle; else the inner ring tilts freely."""
         return self.moment is None
 
+    @property
+    def is_pair(self) -> bool:
+        """Whether the bearing is one of two that press each other."""
+        return self.arrangement in _PAIR.values
+
+
+@check(Operation)
+def _pair_under_axial_load(
+    arrangement: Arrangement, radial_load: Newton, moment: NewtonMetre | None, tilt: Radian | None
+) -> Faults:
+    for name, value in (("radial_load", radial_load), ("moment", moment), ("tilt", tilt)):
+        if value and arrangement is not Arrangement.SINGLE:
+            rule = "must be 0 for a pair: how its two bearings share it is not computed"
+            cure = "Leave preload and arrangement out, and give the loads of one of the two bearings."
+            yield Fault(name, rule, cure)
+
 
 @check(Operation)
 def _something_presses_the_balls(
-    axial_load: Newton, radial_load: Newton, moment: NewtonMetre | None
+    axial_load: Newton | None, preload: Newton | None, radial_load: Newton, moment: NewtonMetre | None
 ) -> Faults:
     """A held tilt takes any moment; without a load, even with a tilt, nothing is pressed together."""
-    if not (axial_load or radial_load or moment):
+    cure = "Give the axial load, or preload and arrangement."
+    if axial_load is None and preload is None:
+        yield Fault("axial_load", "is missing", cure)
+    elif not (axial_load or preload or radial_load or moment):
         rule = "must be > 0 when there is no radial load or moment: nothing presses the balls"
-        yield Fault("axial_load", rule, "Give the preload.")
+        yield Fault("axial_load", rule, cure)
 
 
 @record

@@ -10,7 +10,7 @@ from separatrix.ground.document import Part
 from separatrix.present.blocks import Equation, Heading, Page, Table, facts, text_column
 from separatrix.present.quantity_text import by_race, column, fact, fill, show
 from separatrix.verbs.parts.answer_page import page_of
-from separatrix.verbs.parts.chain_blocks import clearance_blocks, heat_blocks
+from separatrix.verbs.parts.chain_blocks import clearance_blocks, heat_blocks, pair_blocks
 from separatrix.verbs.verb import NoOptions, Verb
 
 if TYPE_CHECKING:
@@ -32,7 +32,7 @@ def compute(study: Study, options: NoOptions) -> BearingState:  # noqa: ARG001
     found, clearances = solution.bearing, solution.clearances
     heat = heat_balance(study, found)
     notes = (*solution.notes, *(heat.notes if heat else ()))
-    return replace(found, clearances=clearances, heat=heat, notes=notes)
+    return replace(found, clearances=clearances, heat=heat, pair=solution.pair, notes=notes)
 
 
 def page(answer: Part) -> Page:
@@ -57,6 +57,7 @@ def page(answer: Part) -> Page:
             fact(answer, "friction_torque"),
             ("Heat of friction", fill(most, "{heat_inner} inner, {heat_outer} outer race, most loaded ball")),
         ),
+        *pair_blocks(answer),
         *heat_blocks(answer.heat),
         Heading("Balls"),
         balls(answer),

@@ -120,7 +120,8 @@ def _(at: RaceContact) -> Node:
 
 @shape.register
 def _(found: BearingState) -> Node:
-    return shape(found.equilibrium) | {"contacts": _contacts(found)} | fields_of(found, "clearances", "heat")
+    more = fields_of(found, "clearances", "heat", "pair")
+    return shape(found.equilibrium) | {"contacts": _contacts(found)} | more
 
 
 def _contacts(found: BearingState) -> Group:

@@ -81,7 +81,7 @@ def compute(study: Study, options: Options, runner: Runner) -> LifeAnswer:
 def page(answer: Part) -> Page:
     """Return the page of `life`."""
     rows = [one for place, one in enumerate(answer.course) if place % SHOWN == 0]
-    columns = tuple(map(column, COURSE))
+    columns = tuple(column(name) for name in COURSE if name in rows[0])
     drivers = (text_column("input", lambda row: row.name), column("correlation"))
     return page_of(
         answer,
@@ -111,7 +111,7 @@ def page(answer: Part) -> Page:
 SHOWN, LISTED = 12, 6
 COURSE = (
     *("revolutions", "probability_stable", "first_decile", "last_decile", "film_inner", "film_outer"),
-    *("race_friction", "pocket_friction", "pocket_clearance"),
+    *("race_friction", "pocket_friction", "pocket_clearance", "land_clearance"),
 )
 LEGEND = (
     "Films and frictions: medians of the drawn bearings. First and last tenth: P(stable) below and above "
@@ -145,6 +145,7 @@ def lead(answer: Part) -> Iterator[str]:
 WHY = {
     "film_worn": "the film on the races is worn",
     "pocket_opened": "the pockets have opened",
+    "land_opened": "the land has opened",
     "friction_risen": "the friction of worn pockets has risen",
 }
 

@@ -22,6 +22,7 @@ from separatrix.verbs.answer_files import (
     save_answer,
 )
 from separatrix.verbs.parts.bearing_drawing import bearing_picture
+from separatrix.verbs.parts.credibility_blocks import credibility
 
 if TYPE_CHECKING:
     from separatrix.study.study import Study
@@ -110,7 +111,8 @@ def report_of(
     drawn = bearing_picture(part_of(kept[main]), part_of(bearing).contacts if bearing else None)
     pages[main] = replace(first, blocks=(*first.blocks[:1], *caveats, *first.blocks[1:], drawn))
     parts = [(VERBS[verb].rstrip("."), page) for verb, page in pages.items()]
-    return Report(joined(first.title, first.subtitle, parts), kept)
+    whole = joined(first.title, first.subtitle, parts)
+    return Report(replace(whole, blocks=(*whole.blocks, *credibility(kept))), kept)
 
 
 def differing(one: Document, other: Document) -> str:

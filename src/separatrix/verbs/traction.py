@@ -22,14 +22,13 @@ CONTACT = ("load", "contact_angle", "spin_roll_ratio", "rolling_speed", *SLOPE)
 
 def compute(study: Study, _options: NoOptions) -> TractionAnswer:
     """Traction curves, and by strips at other pivoting-to-rolling ratios."""
-    from separatrix.chain.contacts import race_tracks
     from separatrix.chain.race_traction import beyond_strips, curves_by_ratio, shear, shown_curve
     from separatrix.chain.solution import solve
     from separatrix.verbs.chain_answers import TractionAnswer
 
     solution = solve(study)
     _ = solution.slopes  # refused, and noted, as everything after them
-    tracks = race_tracks(study.bearing, study.film, solution.bearing)
+    tracks = solution.rolling.tracks
     inner, outer = (shown_curve(track, study.traction) for track in tracks)
     return TractionAnswer(
         race_friction=study.film.race_friction,

@@ -8,20 +8,19 @@ first run on, and the next runs are counted where the target most likely is.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
+from functools import partial
 from math import inf
 from operator import itemgetter
 from typing import Any
 
 import numpy as np
 
-from separatrix.cage.disturbance import settings_for
 from separatrix.cage.moving_cage import MovingCage
 from separatrix.cage.outcome import Cause, RunOutcome
 from separatrix.cage.rows import LANES
-from separatrix.chain.ball_traction import FreeBall, SlipField
 from separatrix.chain.impact_restitution import damping_for
 from separatrix.ground.units import Array, MetrePerSecond, Ratio
 from separatrix.study.study import StabilitySettings
@@ -63,13 +62,15 @@ class Count:
         return Count(self.whirling + other.whirling, self.runs + other.runs, self.notes + other.notes)
 
 
-def cage_at(cage: MovingCage, restitution_factor: Ratio, friction: Ratio) -> MovingCage:
+def cage_at(cage: MovingCage, restitution_factor: Ratio | None, friction: Ratio) -> MovingCage:
     """Return the same cage with the race damping of this restitution factor, and this pocket friction.
 
-    Balls with traction yield faster or slower by the same ratio, with the capacity of their own races; at 1
-    the races grip them.
+    None keeps its own damping. Balls with traction yield faster or slower by the same ratio, with the
+    capacity of their own races; at 1 the races grip them.
     """
     cage = replace(cage, ball_cage_friction=friction)
+    if restitution_factor is None:
+        return cage
     if restitution_factor >= 1.0:
         return replace(cage, race_damping=inf, traction=None, free_ball=None)
     damping = damping_for(restitution_factor, cage.ball_cage_stiffness, cage.mass)
@@ -79,48 +80,22 @@ def cage_at(cage: MovingCage, restitution_factor: Ratio, friction: Ratio) -> Mov
         cage,
         race_damping=damping,
         traction=law and law.stiffened(ratio),
-        free_ball=ball and _stiffened(ball, ratio),
+        free_ball=ball and ball.stiffened(ratio),
     )
 
 
-def _stiffened(ball: FreeBall, ratio: Ratio) -> FreeBall:
-    """Return a free ball whose races reach the same tractions at slips this many times smaller."""
+def responses(
+    cage: MovingCage, settings: StabilitySettings, kicks: Iterable[MetrePerSecond], runner: Runner
+) -> dict[MetrePerSecond, Response]:
+    """Counts of a cage from each kick, none yet, at any pocket friction.
 
-    def race(one: SlipField) -> SlipField:
-        slips = ("slip", "pivoting", "heathcote", "elastic_slip")
-        return replace(one, **{name: getattr(one, name) / ratio for name in slips})
-
-    rate = ball.fastest_rate * ratio
-    return replace(ball, inner=race(ball.inner), outer=race(ball.outer), fastest_rate=rate)
-
-
-class GrowthCounter:
-    """Counts whirling runs at points (eta, f, kick).
-
-    Run number r begins alike at every point, whatever eta, f and kick are (common random numbers).
+    A run counts that whirls or brings a ball to the edge of its wall. Run number r begins alike whatever
+    damping, friction and kick are (common random numbers).
     """
 
-    def __init__(self, cage: MovingCage, settings: StabilitySettings, runner: Runner | None = None) -> None:
-        self.cage, self.settings, self.runner = cage, settings_for(settings, cage), runner or Runner()
-
-    def cage_at(self, restitution_factor: Ratio | None, friction: Ratio) -> MovingCage:
-        """Return the cage with this pocket friction, and the race damping of an eta, or its own for None."""
-        if restitution_factor is None:
-            return replace(self.cage, ball_cage_friction=friction)
-        return cage_at(self.cage, restitution_factor, friction)
-
-    def count(
-        self,
-        restitution_factor: Ratio | None,
-        friction: Ratio,
-        kick: MetrePerSecond,
-        *,
-        first_run: int,
-        runs: int,
-    ) -> Count:
-        """Count the runs, from `first_run` on, that whirl or bring a ball to the edge of its wall."""
-        cage = self.cage_at(restitution_factor, friction)
-        found = self.runner.ensemble(cage, self.settings, kicks=(kick,), runs=runs, first_run=first_run)
+    def look(kick: MetrePerSecond, friction: Ratio, first_run: int, runs: int) -> Count:
+        at = replace(cage, ball_cage_friction=friction)
+        found = runner.ensemble(at, settings, kicks=(kick,), runs=runs, first_run=first_run)
         left = found.cause == Cause.LEFT_POCKET
         unresolved = (found.outcome == RunOutcome.UNRESOLVED) & ~left
         open_ends = int(np.count_nonzero(unresolved & (found.cause != Cause.FALLING)))
@@ -128,13 +103,7 @@ class GrowthCounter:
         notes = (UNRESOLVED.format(open_ends, runs, kick, friction),) if open_ends else ()
         return Count(int(np.count_nonzero(left | (found.outcome == RunOutcome.WHIRLS))), runs, notes)
 
-    def response(self, restitution_factor: Ratio | None, kick: MetrePerSecond) -> Response:
-        """Return the counts from one kick at a restitution factor, none yet; None as in `cage_at`."""
-
-        def look(friction: Ratio, first_run: int, runs: int) -> Count:
-            return self.count(restitution_factor, friction, kick, first_run=first_run, runs=runs)
-
-        return Response(look, self.settings.runs)
+    return {kick: Response(partial(look, kick), settings.runs) for kick in kicks}
 
 
 SEARCHED_FRICTION: Ratio = 1.0  # critical friction is searched from 0 up to here
@@ -191,6 +160,11 @@ def ends_of(found: Found | None) -> tuple[Ratio, Ratio, Ratio] | tuple[None, Non
     return (found.value, found.low, found.high) if isinstance(found, Crossing) else (None, None, None)
 
 
+def notes_of(counts: Mapping[MetrePerSecond, Response]) -> tuple[str, ...]:
+    """Those of the counts from each kick, the weakest first."""
+    return tuple(note for _, response in sorted(counts.items()) for note in response.notes)
+
+
 class Response:
     """Counts on the ladder for one restitution factor and kick; no run is counted twice.
 
@@ -199,7 +173,7 @@ class Response:
 
     def __init__(self, look: Look, runs: int) -> None:
         self.counts: dict[int, Count] = {}
-        self._look, self._runs, self._next = look, runs, 0
+        self.look, self._runs, self._next = look, runs, 0
 
     @property
     def notes(self) -> list[str]:
@@ -208,7 +182,7 @@ class Response:
 
     def add(self, cell: int, runs: int) -> Count:
         """Count more runs at a place of the ladder."""
-        found = self._look(LADDER[cell], self._next, runs)
+        found = self.look(LADDER[cell], self._next, runs)
         self._next += runs
         self.counts[cell] = self.counts.get(cell, Count(0, 0)) + found
         return self.counts[cell]

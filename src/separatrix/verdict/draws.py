@@ -16,6 +16,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from math import exp, expm1, sqrt
 from typing import NamedTuple
 
@@ -31,7 +32,7 @@ from separatrix.ground.errors import InputError, SeparatrixError
 from separatrix.ground.units import Array, MetrePerSecond, Ratio
 from separatrix.study.candidates import environment_of
 from separatrix.study.distribution import Distribution, log_normal
-from separatrix.study.keys import Setter, setter, settled_in, study_numbers, value_of
+from separatrix.study.keys import Setter, setter, settled_in, study_numbers
 from separatrix.study.study import BallModel, Friction, Study
 from separatrix.verdict.judgement import Judgement, judge_solution
 from separatrix.verdict.long_jobs import Runner
@@ -53,7 +54,7 @@ class Case(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class UncertainInput:
-    """One uncertain number: its name and SI unit in a study, its distribution, and its value there.
+    """One uncertain number: its name and SI unit in a study, and its distribution.
 
     `source` of the distribution: ``"study"``, ``"measured"`` (the scatter of a measured friction), or
     ``"assumed"`` (that of an unrepeated test).
@@ -62,7 +63,6 @@ class UncertainInput:
     key: str
     unit: str
     distribution: Distribution
-    central: float
     source: str = "study"
 
 
@@ -103,8 +103,7 @@ def uncertain_inputs(
     """
     known, found = study_numbers(study), list[UncertainInput]()
     for key, one in study.distributions.items():
-        central = value_of(study, known[key]) or 0.0
-        found.append(UncertainInput(key=key, unit=known[key].unit, distribution=one, central=central))
+        found.append(UncertainInput(key=key, unit=known[key].unit, distribution=one))
     return (*found, *_frictions(study, stated_frictions(study) if frictions is None else frictions))
 
 
@@ -131,7 +130,7 @@ def _frictions(study: Study, frictions: Mapping[Case, Friction]) -> Iterator[Unc
         if deviation > 0.0:
             where = f"Friction from tests of {candidate} in {environment}"
             law = settled_in(study, key, _next_cage(friction, deviation, where))
-            yield UncertainInput(key=key, unit="-", distribution=law, central=friction.mean, source=source)
+            yield UncertainInput(key=key, unit="-", distribution=law, source=source)
 
 
 def _next_cage(friction: Friction, deviation: Ratio, where: str) -> Distribution:
@@ -170,18 +169,10 @@ def sample(
     *,
     frictions: Mapping[Case, Friction] | None = None,
 ) -> Draws:
-    """Draw the uncertain inputs of a study.
+    """Draw the uncertain inputs of a study, by default with the measured frictions that it states.
 
-    Parameters
-    ----------
-    study : Study
-        With distributions, or with candidates whose friction was measured.
-    samples : int
-        1 to `MOST_SAMPLES`, best a power of two. The first of more samples are the same as fewer samples.
-    seed : int, optional
-        Of the scrambling; without it the study's. The draws are the same on every machine.
-    frictions : mapping, optional
-        Measured friction of each case; by default as the study states it.
+    `samples` is from 1 to `MOST_SAMPLES`, best a power of two; the first of more are the same as fewer. The
+    draws of a seed of the scrambling, by default the study's, are the same on every machine.
 
     Raises
     ------
@@ -233,13 +224,9 @@ class DrawnBearings:
 
     def judge(self, case: Case, kicks: Sequence[MetrePerSecond], runner: Runner) -> Judgement:
         """Judge all the runs of a case by the ball that decides, offsets by the central cage."""
-        every, solution = range(len(self.runs)), self.central[case.candidate]
-
-        def run(cage: MovingCage) -> Ensemble:
-            ball = None if cage.free_ball is None else BallModel.FREE
-            return self.ensemble(case, kicks, every, runner, ball=ball)
-
-        return judge_solution(solution, self.central_friction(case), run)
+        every = range(len(self.runs))
+        run = partial(self.ensemble, case, kicks, every, runner)
+        return judge_solution(self.central[case.candidate], self.stated[case].mean, run)
 
     @property
     def kicks(self) -> tuple[MetrePerSecond, ...]:
@@ -247,23 +234,19 @@ class DrawnBearings:
         cage = moving_cage(next(iter(self.central.values())), 0.0)
         return settings_for(self.study.stability, cage).kicks
 
-    def central_friction(self, case: Case) -> Ratio:
-        """Stated friction of a case with every input at its central value."""
-        return self.stated[case].mean
-
     def ensemble(
         self,
         case: Case,
         kicks: Sequence[MetrePerSecond],
         places: Iterable[int],
         runner: Runner,
-        ball: BallModel | None = None,
+        central: MovingCage,
     ) -> Ensemble:
-        """Run the bearings at these places once from each kick [m/s].
+        """Run the bearings at these places once from each kick [m/s], among such balls as the central cage.
 
         `Interrupted` if the work was interrupted before the last run.
         """
-        asked = []
+        asked, ball = [], None if central.free_ball is None else BallModel.FREE
         for place in places:
             own = self.solved[place][case.candidate]
             cage = moving_cage(own, float(self.friction[case][place]), ball)

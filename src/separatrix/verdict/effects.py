@@ -10,7 +10,6 @@ from separatrix.cage.moving_cage import MovingCage
 from separatrix.chain.land_fluid import land_fluid
 from separatrix.chain.solution import Solution
 from separatrix.ground.units import Ratio, format_quantity
-from separatrix.study.study import Guidance
 
 WIDE: Ratio = 1.6
 """Clearance of a wide land over that of the pocket: there the pockets stop the cage, not the land."""
@@ -38,12 +37,8 @@ class Change:
     values: Mapping[str, Any]
 
 
-def effects_on(solution: Solution, cage: MovingCage) -> dict[str, Change]:
-    """What the inputs of a study allow to put in or leave out, by name."""
-    return dict(_effects(solution, cage))
-
-
-def _effects(solution: Solution, cage: MovingCage) -> Iterator[tuple[str, Change]]:
+def effects_on(solution: Solution, cage: MovingCage) -> Iterator[tuple[str, Change]]:
+    """What the inputs of a study allow to put in or leave out, each with its name."""
     if 0.0 < 2.0 * cage.land_gap < cage.pocket_clearance:
         wide = WIDE * cage.pocket_clearance
         yield (
@@ -55,10 +50,9 @@ def _effects(solution: Solution, cage: MovingCage) -> Iterator[tuple[str, Change
         yield "fluid", Change(words, {"added_mass": 0.0, "fluid_damping": 0.0})
     found = land_fluid(solution.study, solution.design, cage.cage_speed)
     if cage.added_mass == 0.0 and found and found.added_mass > MOVED * cage.mass:
-        ring = cage.inner_speed if cage.guidance is Guidance.INNER else cage.outer_speed
         gap, body = (format_quantity(one, "kg", 2) for one in (found.added_mass, cage.mass))
         values = {"added_mass": found.added_mass, "fluid_damping": found.damping}
-        values["fluid_speed"] = 0.5 * (cage.cage_speed + ring)
+        values["fluid_speed"] = 0.5 * (cage.cage_speed + cage.guiding_ring_speed)
         yield "fluid", Change(f"the fluid in the gap of the land, {gap} beside a cage of {body}", values)
     if cage.ball_diameter_scatter > 0.0:
         equal = {"ball_diameter_scatter": 0.0, "orbit_by_diameter": 0.0, "balls_at_walls": False}

@@ -196,17 +196,9 @@ def judge(cage: MovingCage, ensemble: Ensemble, *, capacity: Newton | None = Non
     settle or roll in their pockets, the lower end of that share's 95 % interval is above one half, and the
     cage neither drifts nor ends outside its pockets nor left its room nor, in any run, the range of numbers,
     nor does friction on the land keep it moving in more than a tenth of the runs from a kick. UNDECIDED
-    otherwise. The rule is ours; it asks more of a stable cage than of an unstable one.
-
-    Parameters
-    ----------
-    cage : MovingCage
-        Whose runs these are.
-    ensemble : Ensemble
-        The runs.
-    capacity : float, optional
-        Largest force that the races transmit to a ball, f_BT (Q_i + Q_o) [N]; by default that of its law of
-        traction.
+    otherwise. The rule is ours; it asks more of a stable cage than of an unstable one. `capacity` is the
+    largest force that the races transmit to a ball, f_BT (Q_i + Q_o) [N], by default that of its law of
+    traction.
     """
     counts = kick_counts(ensemble)
     verdict, because = decide(cage, ensemble, counts)
@@ -216,11 +208,14 @@ def judge(cage: MovingCage, ensemble: Ensemble, *, capacity: Newton | None = Non
     shown = np.ones_like(whirling) if motion is None else outcome == ENDS[motion]
     rate, rate_low, rate_high = _growth(ensemble.growth_rate[at])
     pockets, land = _impact_shares(ensemble)
+    low, high = ensemble.axial_low, ensemble.axial_high
+    mean, spread = ensemble.mean_offset[at][shown], ensemble.offset_spread[at][shown]
+    is_off = mean > 0.0  # runs that left the axis at all
 
     def median(name: str) -> float:
         return float(np.median(getattr(ensemble, name)[at][shown]))
 
-    force, speed = ensemble.rubbing_force[at][shown], ensemble.rubbing_speed[at][shown]
+    rubbing = (ensemble.rubbing_force * ensemble.rubbing_speed)[at][shown]
     largest, limit = float(ensemble.largest_contact_force.max()), reasons.force_limit(cage, capacity)
     return Judgement(
         verdict=verdict,
@@ -237,8 +232,8 @@ def judge(cage: MovingCage, ensemble: Ensemble, *, capacity: Newton | None = Non
         growth_rate_high=rate_high,
         largest_offset=float(ensemble.largest_offset.max()),
         mean_offset=median("mean_offset"),
-        orbit_evenness=_evenness(ensemble, at, shown),
-        drift_rate=_median(ensemble.drift_rate[at][~whirling]),
+        orbit_evenness=reasons.median(spread[is_off] / mean[is_off]),
+        drift_rate=reasons.median(ensemble.drift_rate[at][~whirling]),
         drift_rate_law=drift_rate_law(cage),
         largest_contact_force=largest,
         largest_land_force=float(ensemble.largest_land_force.max()),
@@ -254,16 +249,16 @@ def judge(cage: MovingCage, ensemble: Ensemble, *, capacity: Newton | None = Non
         end_energy=median("end_energy"),
         pocket_power=median("pocket_power"),
         land_power=median("land_power"),
-        rubbing_force=_median(force),
-        rubbing_speed=_median(speed),
-        rubbing_power=cage.land_friction * _median(force * speed),
+        rubbing_force=median("rubbing_force"),
+        rubbing_speed=median("rubbing_speed"),
+        rubbing_power=cage.land_friction * float(np.median(rubbing)),
         energy_imbalance=float(ensemble.energy_imbalance.max()),
         duration=ensemble.duration,
         longest_run=float(ensemble.followed.max()),
         runs=ensemble.outcome.shape[1],
         impact_rate=median("strike_rate"),
         largest_tilt=None if ensemble.largest_tilt is None else float(ensemble.largest_tilt.max()),
-        axial_travel=_travel(ensemble),
+        axial_travel=None if low is None or high is None else float((high - low).max()),
         cone_ratio=None if ensemble.cone_speed is None else _whirl_ratio(cage, median("cone_speed")),
     )
 
@@ -278,13 +273,6 @@ ENDS = {
 """Outcome of the runs that end in a motion."""
 
 
-def _travel(ensemble: Ensemble) -> Metre | None:
-    """Largest way between the ends of the axial motion of a run; None in the plane."""
-    if ensemble.axial_high is None or ensemble.axial_low is None:
-        return None
-    return float((ensemble.axial_high - ensemble.axial_low).max())
-
-
 def wilson_interval(successes: int, count: int, normal: float = NORMAL_95) -> tuple[Ratio, Ratio]:
     """Wilson's interval of a share, 95 % or that of another normal quantile [-]; 0 to 1 without a trial."""
     if count == 0:
@@ -296,28 +284,13 @@ def wilson_interval(successes: int, count: int, normal: float = NORMAL_95) -> tu
     return min(low, p), max(high, p)  # rounding would leave none and all just outside
 
 
-def mean_half_width(values: Array) -> float | None:
-    """Half the width of Student's 95 % interval of the mean; None where fewer than two values tell none."""
-    count = values.size
-    if count < 2:
-        return None
-    return float(stdtrit(count - 1, 0.975) * np.std(values, ddof=1) / math.sqrt(count))
-
-
 def _growth(rates: Array) -> tuple[float, float | None, float | None]:
-    """Mean growth rate of some runs, and its interval."""
-    mean, half = float(rates.mean()), mean_half_width(rates)
-    return (mean, None, None) if half is None else (mean, mean - half, mean + half)
-
-
-def _median(values: Array) -> float:
-    return float(np.median(values)) if values.size else 0.0
-
-
-def _evenness(ensemble: Ensemble, kick: int, shown: Array) -> Ratio:
-    """Median of spread over mean of the offset, over the runs shown that left the axis at all."""
-    mean, spread = ensemble.mean_offset[kick][shown], ensemble.offset_spread[kick][shown]
-    return _median(spread[mean > 0.0] / mean[mean > 0.0])
+    """Mean growth rate of some runs, and Student's 95 % interval of it; fewer than two runs have none."""
+    mean, count = float(rates.mean()), rates.size
+    if count < 2:
+        return mean, None, None
+    half = float(stdtrit(count - 1, 0.975) * np.std(rates, ddof=1) / math.sqrt(count))
+    return mean, mean - half, mean + half
 
 
 def _impact_shares(ensemble: Ensemble) -> tuple[Array, Ratio]:
@@ -415,16 +388,7 @@ def judge_solution(solution: Solution, friction: Ratio, run: Callable[[MovingCag
     That is the one of the study, or one state until free balls have to be asked. The critical friction with
     one state is 0.74 to 1.00 of that among free balls (ten bearings, the worse of two speeds): its STABLE is
     safe, its UNSTABLE may be too early. They agree while the friction of a sustained whirl stays below a
-    quarter of what the races hold.
-
-    Parameters
-    ----------
-    solution : Solution
-        Of the chain.
-    friction : float
-        Ball on cage [-].
-    run : callable
-        Runs the ensemble of a cage, always with the same settings.
+    quarter of what the races hold. `run` makes the runs of a cage, always with the same settings.
     """
     capacity = transmitted_force(solution)
     return judge_by_ball(solution, friction, lambda cage: judge(cage, run(cage), capacity=capacity))

@@ -43,6 +43,7 @@ from separatrix.verdict.wear_life import (
     AcceleratedTest,
     BearingWear,
     Course,
+    Land,
     Life,
     LifeRow,
     LifeTable,
@@ -61,6 +62,11 @@ RUNS = 32
 
 FRICTIONS, WIDENINGS = 6, (1.0, 1.5, 2.5)
 """Race frictions of the table, and its pocket clearances over that of a new pocket."""
+
+LAND_AT = 1
+"""Race friction of the table, by its place, at which the land is widened for its exponent."""
+
+NO_WIDTH = "The wear of the land is not followed: [cage] land_width is not given."
 
 NARROWER = (1.0, 0.5, 0.2, 0.05)
 """Parts of that widening, the first that the gap between the balls allows."""
@@ -102,8 +108,8 @@ class Node(NamedTuple):
 
     critical: Ratio
     steepness: float
-    calm: Watt
-    whirl: Watt
+    pockets: tuple[Watt, Watt]  # work of a calm and of a whirling cage
+    lands: tuple[Watt, Watt]
     notes: tuple[str, ...] = ()
 
 
@@ -111,13 +117,12 @@ class Duty(NamedTuple):
     """A part of the time, with the chain at its speed and load, and how its runs are made."""
 
     share: Ratio
-    study: Study
     solution: Solution
     settings: StabilitySettings
 
 
 Place = tuple[int, int, int]
-"""Phase, race friction and pocket clearance of a node."""
+"""Phase, race friction and pocket clearance of a node; -1 for a new pocket on a wider land."""
 
 
 def life(
@@ -158,7 +163,9 @@ def life(
     every = np.concatenate((worn.film_friction, worn.bare_friction))
     low = max(float(every.min()), LEAST_FRICTION)
     frictions = np.geomspace(low, max(float(every.max()), APART * low), FRICTIONS)
-    clearances = _clearances(study, solution.stated_design.pocket_clearance)
+    clearances = _clearances(study, "cage.pocket_clearance", solution.stated_design.pocket_clearance)
+    land = solution.stated_design.land_clearance or 0.0
+    lands = _clearances(study, "cage.land_clearance", land) if _land(solution) else [land]
     parts = [(share, varied(study, one)) for share, one in _shared(cases)]
     phases = [_duty(one, candidate, share) for share, one in parts if _turns(one)]  # nothing wears at rest
     if not phases:
@@ -166,41 +173,42 @@ def life(
     if accelerated is not None and accelerated == study.operation.outer_speed:
         raise InputError("--accelerated", "must differ from the speed of the outer ring")
     test = accelerated and _duty(varied(study, {SPEED: accelerated}), candidate, 1.0)
+    duties = [*phases, test] if test else phases
 
     def node(place: Place) -> Node:
-        phase, i, j = place
-        if test and phase == len(phases):
-            return _node(test.solution, test.settings, runner)
-        values = {"film.race_friction": float(frictions[i]), "cage.pocket_clearance": clearances[j]}
-        at = phases[phase]
-        return _node(solve(varied(at.study, values), candidate), at.settings, runner)
+        at, i, j = duties[place[0]], *place[1:]
+        if at is test:
+            return _node(at.solution, at.settings, runner)
+        values = {"film.race_friction": float(frictions[i]), "cage.pocket_clearance": clearances[max(j, 0)]}
+        values |= {"cage.land_clearance": lands[1]} if j < 0 else {}
+        return _node(solve(varied(at.solution.study, values), candidate), at.settings, runner)
 
     def answer(found: Mapping[Place, Node]) -> Life:
         if len(found) < len(places):
             raise Interrupted
         notes = [*_notes(found, fixed, assumed), *_tests(rates, solution), *solution.notes]
+        notes += [NO_WIDTH] if land and not lands[1:] else []
         each = [
             Phase(
                 share=one.share,
                 bearing=_bearing_wear(one.solution),
-                table=_table(found, place, frictions, np.array(clearances)),
+                table=_table(found, place, frictions, np.array(clearances), np.array(lands)),
             )
             for place, one in enumerate(phases)
         ]
         tested = _accelerated(test.solution, found[places[-1]], each, worn) if test else None
-        speed = sum(one.share * _turns(one.study) for one in phases)
+        speed = sum(one.share * _turns(one.solution.study) for one in phases)
         name = candidate.name if candidate else "the cage"
         return _life(name, each, worn, inputs, speed, revolutions, tested, notes)
 
     places = list(itertools.product(range(len(phases)), range(FRICTIONS), range(len(clearances))))
+    places += [(phase, LAND_AT, -1) for phase in range(len(phases)) if lands[1:]]
     places += [(len(phases), 0, 0)] if test else []
     return runner.work_out(
         node,
         places,
         into=answer,
-        load=lambda place: _load(
-            (phases[place[0]] if place[0] < len(phases) else test or phases[0]).settings
-        ),
+        load=lambda place: _load(duties[place[0]].settings),
     )
 
 
@@ -267,7 +275,7 @@ def _shared(cases: Sequence[Mapping[str, float]]) -> list[tuple[Ratio, Mapping[s
 def _duty(study: Study, candidate: Candidate | None, share: Ratio) -> Duty:
     solution = solve(study, candidate)
     settings = settings_for(study.stability, moving_cage(solution, 0.0))
-    return Duty(share, study, solution, replace(settings, runs=min(RUNS, settings.runs)))
+    return Duty(share, solution, replace(settings, runs=min(RUNS, settings.runs)))
 
 
 def _turns(study: Study) -> Hertz:
@@ -284,7 +292,17 @@ def _bearing_wear(solution: Solution) -> BearingWear:
         ball_diameter=study.bearing.ball_diameter,
         ball_count=study.bearing.ball_count,
         clearance=solution.stated_design.pocket_clearance,
+        land=_land(solution),
     )
+
+
+def _land(solution: Solution) -> Land | None:
+    """What wears on the lands; None without one, or without its width."""
+    design, cage = solution.stated_design, moving_cage(solution, 0.0)
+    if not (cage.land_gap and cage.land_width and design.land_clearance):
+        return None
+    around = 2.0 * math.pi * (cage.land_radius or cage.pitch_radius)
+    return Land(around * cage.land_width * cage.land_count, design.land_clearance)
 
 
 def _accelerated(solution: Solution, node: Node, phases: Sequence[Phase], worn: Worn) -> AcceleratedTest:
@@ -302,18 +320,18 @@ def _accelerated(solution: Solution, node: Node, phases: Sequence[Phase], worn: 
         critical_friction=node.critical,
         probability_stable=float(1.0 - chance.mean()),
         film_time=float(1.0 / max(films)),
-        pocket_time=float(node.calm / calm),
+        pocket_time=float(node.pockets[0] / calm),
     )
 
 
-def _clearances(study: Study, new: Metre) -> list[Metre]:
-    """Pocket clearances of the table: as wide as `WIDENINGS`, or as the study takes."""
+def _clearances(study: Study, key: str, new: Metre) -> list[Metre]:
+    """Clearances of the table: as wide as `WIDENINGS`, or as the study takes."""
     if new == 0.0:
         raise InputError("[cage] pocket_clearance", "must be > 0 for a pocket that opens by wear")
     for part in NARROWER:
         found = [new * (1.0 + part * (factor - 1.0)) for factor in WIDENINGS]
         with contextlib.suppress(InputError):
-            varied(study, {"cage.pocket_clearance": found[-1]})
+            varied(study, {key: found[-1]})
             break
     return found
 
@@ -325,23 +343,29 @@ def _node(solution: Solution, settings: StabilitySettings, runner: Runner) -> No
     critical = SEARCHED_FRICTION if at is None else max(at, 1e-3)
     ball = BallModel.FREE if limit.critical_ball == "free" else None
 
-    def sliding(friction: Ratio, *, whirls: bool) -> Watt:
+    def sliding(friction: Ratio, *, whirls: bool) -> tuple[Watt, Watt]:
         cage = moving_cage(solution, min(friction, SEARCHED_FRICTION), ball)
         found = runner.ensemble(cage, settings, kicks=(limit.critical_kick,), runs=WORK_RUNS)
         return _mean(found, whirls=whirls)
 
     calm = sliding(CALM * critical, whirls=False)
     whirl = sliding(WHIRLING * critical, whirls=True)
-    return Node(critical, limit.steepness or STEEP, calm, whirl or calm, limit.notes)
+    whirl = whirl if whirl[0] else calm
+    pockets, lands = (calm[0], whirl[0]), (calm[1], whirl[1])
+    return Node(critical, limit.steepness or STEEP, pockets, lands, limit.notes)
 
 
-def _mean(found: Ensemble, *, whirls: bool) -> Watt:
-    """Mean work of the pockets in the runs that whirl, or settle; in all where none does."""
+def _mean(found: Ensemble, *, whirls: bool) -> tuple[Watt, Watt]:
+    """Mean work of pockets and of lands in the runs that whirl, or settle; in all where none does."""
     kind = found.outcome == RunOutcome.WHIRLS if whirls else is_calm(found.outcome)
-    return float(found.pocket_sliding[kind if kind.any() else np.ones_like(kind)].mean())
+    each = kind if kind.any() else np.ones_like(kind)
+    works = found.pocket_sliding, found.rubbing_force * found.rubbing_speed
+    return float(works[0][each].mean()), float(works[1][each].mean())
 
 
-def _table(found: Mapping[Place, Node], phase: int, frictions: Array, clearances: Array) -> LifeTable:
+def _table(
+    found: Mapping[Place, Node], phase: int, frictions: Array, clearances: Array, lands: Array
+) -> LifeTable:
     def each(name: str) -> Array:
         return np.array(
             [
@@ -350,13 +374,23 @@ def _table(found: Mapping[Place, Node], phase: int, frictions: Array, clearances
             ]
         )
 
+    pockets, on_land = each("pockets"), each("lands")
+    exponent, widening = 0.0, 1.0
+    wider, new = found.get((phase, LAND_AT, -1)), found[phase, LAND_AT, 0]
+    if wider and wider.critical < SEARCHED_FRICTION and new.critical < SEARCHED_FRICTION:
+        widening = float(lands[1] / lands[0])
+        exponent = math.log(wider.critical / new.critical) / math.log(widening)
     return LifeTable(
         race_friction=frictions,
         pocket_clearance=clearances,
         critical_friction=each("critical"),
         steepness=each("steepness"),
-        calm_sliding=each("calm"),
-        whirl_sliding=each("whirl"),
+        calm_sliding=pockets[..., 0],
+        whirl_sliding=pockets[..., 1],
+        calm_land_sliding=on_land[..., 0],
+        whirl_land_sliding=on_land[..., 1],
+        land_exponent=exponent,
+        land_widening=widening,
     )
 
 
@@ -439,15 +473,10 @@ def _life(
     known = max(1, int(np.count_nonzero(ends & (life > 0.0))))
     shares = [float(np.count_nonzero((most == i) & (life > 0.0)) / known) for i in range(len(moved))]
     at_10, at_50, at_90 = (_quantile(life, share, speed) for share in (0.1, 0.5, 0.9))
-    table = phases[0].table
-    wide = float(np.mean(found.clearance[-1] > table.pocket_clearance[-1]))
-    widest = format_quantity(float(table.pocket_clearance[-1]), "m", 3)
-    if wide >= 0.005:
-        notes = [
-            *notes,
-            f"In {100.0 * wide:.0f} % of the draws the pockets open beyond {widest} by the end: from there "
-            "on the table's last clearance holds.",
-        ]
+    table, land = phases[0].table, phases[0].bearing.land
+    notes += _beyond(found.clearance[-1], float(table.pocket_clearance[-1]), "the pockets open")
+    if land and table.land_widening > 1.0:
+        notes += _beyond(found.land_clearance[-1], table.land_widening * land.clearance, "the land opens")
     return Life(
         candidate=name,
         draws=life.size,
@@ -460,7 +489,8 @@ def _life(
         revolutions_per_second=speed,
         film_worn=shares[0],
         pocket_opened=shares[1],
-        friction_risen=shares[2],
+        land_opened=shares[2],
+        friction_risen=shares[3],
         reservoir_empty=float(np.mean(found.volume[-1] >= worn.reservoir)),
         coverage_calm=float(np.median(calm)),
         coverage_whirling=float(np.median(whirling)),
@@ -473,6 +503,16 @@ def _life(
         complete=True,
         notes=tuple(dict.fromkeys(notes)),
     )
+
+
+def _beyond(found: Array, widest: Metre, what: str) -> Iterator[str]:
+    """A sentence on draws that wear beyond the table."""
+    share = float(np.mean(found > widest))
+    if share >= 0.005:
+        yield (
+            f"In {100.0 * share:.0f} % of the draws {what} beyond {format_quantity(widest, 'm', 3)} by the "
+            "end: from there on the table's last clearance holds."
+        )
 
 
 def _quantile(life: Array, share: Ratio, speed: float) -> float | None:
@@ -501,6 +541,7 @@ def _rows(found: Course, speed: float) -> list[LifeRow]:
                 race_friction=median(found.race_friction, place),
                 pocket_friction=median(found.pocket_friction, place),
                 pocket_clearance=median(found.clearance, place),
+                land_clearance=median(found.land_clearance, place) or None,
             )
         )
     return rows

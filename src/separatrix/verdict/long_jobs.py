@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import io
 import math
 import signal
 import threading
@@ -16,16 +17,7 @@ from typing import Any, NamedTuple, Protocol, TypeVar
 import numpy as np
 
 from separatrix.cage.disturbance import settings_for
-from separatrix.cage.ensemble import (
-    BY_BALL,
-    SPACE_ONLY,
-    WHOLE_NUMBERS,
-    Ensemble,
-    Runs,
-    Stop,
-    ensemble_of,
-    pieces_of,
-)
+from separatrix.cage.ensemble import Ensemble, Runs, Stop, ensemble_of, pieces_of
 from separatrix.cage.moving_cage import MovingCage
 from separatrix.ground.compiling import COMPILING
 from separatrix.ground.units import MetrePerSecond, Ratio, Second
@@ -197,15 +189,14 @@ class Runner:
         if self.ledger is None:
             return self._followed(asked, kicks)
         key = key_of([(one.cage, _of_runs(one.settings), *one[2:]) for one in asked], tuple(kicks))
-        cage, shape = asked[0].cage, (len(kicks), sum(one.runs for one in asked))
-        known = _unpacked(self.ledger.get(key), cage, shape)
-        if known is not None:
-            self.ledger.taken += shape[0] * shape[1]
-            self._work.keep(self._place)
-            return known
-        found = self._followed(asked, kicks)
-        arrays = (np.asarray(getattr(found, name)) for name in _names(cage))
-        self.ledger.put(key, zlib.compress(b"".join(array.tobytes() for array in arrays), 1))
+        kept = self.ledger.get(key)
+        if kept is None:
+            found = self._followed(asked, kicks)
+            self.ledger.put(key, _packed(found))
+            return found
+        found = _unpacked(kept)
+        self.ledger.taken += found.outcome.size
+        self._work.keep(self._place)
         return found
 
     @property
@@ -385,25 +376,19 @@ def _of_runs(settings: StabilitySettings) -> tuple[int, Second, Ratio]:
     return settings.seed, settings.duration, settings.ball_scatter
 
 
-def _names(cage: MovingCage) -> list[str]:
-    """Fields of the ensemble of a cage; those of space are None in the plane."""
-    return [name for name in NAMES if cage.is_in_space or name not in SPACE_ONLY]
+def _packed(found: Ensemble) -> bytes:
+    """Arrays of an ensemble as one record, compressed; those of space are None in the plane."""
+    arrays = {name: np.asarray(value) for name in NAMES if (value := getattr(found, name)) is not None}
+    record = np.empty((), [(name, one.dtype, one.shape) for name, one in arrays.items()])
+    for name, one in arrays.items():
+        record[name] = one
+    whole = io.BytesIO()
+    np.save(whole, record)
+    return zlib.compress(whole.getvalue(), 1)
 
 
-def _unpacked(known: bytes | None, cage: MovingCage, runs: tuple[int, int]) -> Ensemble | None:
-    """Ensemble of a cage from its bytes, with so many kicks and runs; None if they are of no use."""
-    shapes: dict[str, tuple[int, ...]] = dict.fromkeys(_names(cage), runs)
-    shapes |= dict.fromkeys(BY_BALL, (*runs, cage.ball_count)) | {"kicks": runs[:1], "duration": ()}
-    sizes = {name: int(np.prod(shape)) for name, shape in shapes.items()}
-    whole, data = 8 * sum(sizes.values()), b""
-    with contextlib.suppress(zlib.error):
-        data = b"" if known is None else zlib.decompressobj().decompress(known, whole + 1)
-    if len(data) != whole:
-        return None
-    at = 0
-    values: dict[str, Any] = {}
-    for name, size in sizes.items():
-        number = np.int64 if name in WHOLE_NUMBERS else np.float64
-        values[name] = np.frombuffer(data, number, size, at).reshape(shapes[name])
-        at += 8 * size
+def _unpacked(kept: bytes) -> Ensemble:
+    """The ensemble of these bytes."""
+    record = np.load(io.BytesIO(zlib.decompress(kept)))
+    values: dict[str, Any] = {name: record[name] for name in record.dtype.names}
     return Ensemble(**values | {"duration": float(values["duration"])})

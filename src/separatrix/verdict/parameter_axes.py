@@ -72,13 +72,6 @@ def parameters() -> dict[str, Parameter]:
     return {name: Parameter(name, unit) for name, unit in left.items()}
 
 
-def other_keys() -> list[str]:
-    """Keys of a study that no map can vary: texts, lists, and how the ensemble is drawn."""
-    known = parameters()
-    keys = [f"{section}.{name}" for section, record in SECTIONS.items() for name in keys_of(record)]
-    return [key for key in keys if key not in known and key not in SHORT]
-
-
 def varied(study: Study, values: Mapping[str, float]) -> Study:
     """Return the study with other values of some parameters, all at once; `InputError` if it is refused.
 
@@ -160,7 +153,8 @@ def find_parameter(name: str, option: str) -> Parameter:
     name = SHORT.get(name, name)
     if name in known:
         return known[name]
-    if name in other_keys():
+    section, _, key = name.partition(".")
+    if section in SECTIONS and key in keys_of(SECTIONS[section]):
         raise InputError(f"{option} {name}", "is not a number that a map can vary")
     ends = [full for full in known if full.endswith(f".{name}")]
     cure = f"Did you mean {ends[0]}?" if ends else nearest(name, known)
@@ -225,12 +219,8 @@ def _whole(low: float, high: float, count: int, where: str) -> tuple[int, ...]:
 def asked_cases(vary: Sequence[str], cases: Path | Sequence[Case] | None) -> list[Case]:
     """Every case: those of a table or a list, or all that the ranges make together.
 
-    Parameters
-    ----------
-    vary : sequence of str
-        Ranges, each ``PARAM=LOW..HIGH[unit][:N][:log]``.
-    cases : Path, or sequence of mapping, or None
-        A CSV file, or values by the names of a study file in SI units.
+    A range is ``PARAM=LOW..HIGH[unit][:N][:log]``; a list has values by the names of a study file in SI
+    units.
 
     Raises
     ------

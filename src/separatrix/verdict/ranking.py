@@ -9,7 +9,8 @@ from functools import partial
 from math import log
 from typing import Any, NamedTuple, TypeVar
 
-from separatrix.cage.moving_cage import moving_cage
+from separatrix.cage.disturbance import settings_for
+from separatrix.cage.moving_cage import MovingCage, moving_cage
 from separatrix.chain.impact_restitution import SOLID_LUBRICATION_LIMIT
 from separatrix.chain.solution import Solution, solve
 from separatrix.ground.units import Ratio
@@ -31,7 +32,6 @@ from separatrix.verdict.beyond_models import (
     pocket_of,
     reason,
 )
-from separatrix.verdict.crossing import GrowthCounter
 from separatrix.verdict.draws import Case, DrawnBearings, drawn_bearings
 from separatrix.verdict.effects import Change, Effect, effects_on
 from separatrix.verdict.judgement import judge_solution, transmitted_force
@@ -111,8 +111,8 @@ class _Question:
     cages: Mapping[Pocket, Solution]
     is_paper: bool  # whether the study's model is the paper's
     spreads: Mapping[str, float]  # by candidate: what uncertain inputs do to its critical friction
-    counters: Mapping[Pocket, GrowthCounter]  # of the same cages by the paper's model, as the next
-    paper: Mapping[Pocket, Solution]
+    paper: Mapping[Pocket, Solution]  # of the same cages by the paper's model
+    paper_cages: Mapping[Pocket, MovingCage]
     factors: Sequence[Ratio]  # restitution factors of the curves
     pockets: Mapping[str, Pocket]
     reference: Pocket
@@ -207,8 +207,8 @@ def _notes(
     knots = [Knot(pocket, eta) for pocket in question.cages for eta in (*question.factors, None)]
     limits = (one for piece, one in found.items() if isinstance(piece, Limit))
     points = (found[knot] for knot in knots if knot in found)
-    paper = (counter.cage for counter in question.counters.values())
-    notes = [note for one in (*question.solved, *limits, *paper, *points) for note in one.notes]
+    cages = question.paper_cages.values()
+    notes = [note for one in (*question.solved, *limits, *cages, *points) for note in one.notes]
     notes += [other_than_candidates(study, asked)] if len(question.cages) > 1 else []
     if question.drawn and (failures := question.drawn.failures):
         share = f"{len(failures)} of {study.stability.runs}"
@@ -235,26 +235,24 @@ def _question(
     every = {(pockets[n], f.mean) for table in tables for n, f in table.items() if f is not None}
     keys = [Asked(*each) for each in sorted(every)]
     own = {Asked(pockets[n], f.mean, True) for n, f in tables[0].items() if f is not None}
-    counters = {
-        pocket: GrowthCounter(moving_cage(one, 0.0), study.stability, runner) for pocket, one in paper.items()
-    }
+    paper_cages = {pocket: moving_cage(one, 0.0) for pocket, one in paper.items()}
     drawn = drawn_bearings(study, study.stability.runs) if study.distributions else None
     spreads = {}
     if drawn and not is_paper:
         spreads = {name: spread([own[name] for own in drawn.solved]) for name in solved}
     return _Question(
-        settings=counters[reference].settings,
+        settings=settings_for(study.stability, paper_cages[reference]),
         solved=[*solved.values()],
         cages=cages,
         is_paper=is_paper,
         spreads=spreads,
         paper=paper,
-        counters=counters,
+        paper_cages=paper_cages,
         factors=threshold_factors(study.stability),
         pockets=pockets,
         reference=reference,
         environment=required_environment(study, asked),
-        effects={} if is_paper else effects_on(cages[reference], moving_cage(cages[reference], 0.0)),
+        effects={} if is_paper else dict(effects_on(cages[reference], moving_cage(cages[reference], 0.0))),
         drawn=drawn,
         keys=keys,
         beside=[] if is_paper else sorted(own),
@@ -330,8 +328,9 @@ def _computed(question: _Question, piece: Piece) -> object:
     if isinstance(piece, Case):
         return question.drawn and question.drawn.judge(piece, settings.kicks, runner)
     if isinstance(piece, Knot):
-        counter, eta = question.counters[piece.pocket], piece.restitution_factor
-        return critical_friction(counter.cage, eta, settings, counter=counter, band=eta is None)
+        cage, eta = question.paper_cages[piece.pocket], piece.restitution_factor
+        stated = question.paper[piece.pocket].study.stability
+        return critical_friction(cage, eta, stated, runner=runner, band=eta is None)
     if isinstance(piece, Limit):
         solution = question.cages[piece.pocket]
         highest = max(key.friction for key in question.keys)
@@ -359,7 +358,7 @@ def _curve(question: _Question, found: Findings) -> StabilityCurve | None:
     points = [point for point in points if not shown or point.restitution_factor in shown]
     if not points:
         return None
-    cage = question.counters[question.reference].cage
+    cage = question.paper_cages[question.reference]
     return curve_of_points(cage, question.settings, points, band=False, here=here, complete=complete)
 
 
@@ -389,27 +388,26 @@ def _row(
     """One candidate, not yet ranked."""
     pocket = question.pockets[name]
     eta = question.cages[pocket].restitution.restitution_factor
-    row = NotFinished(
-        name=name,
-        friction=friction.mean,
-        friction_error=friction.error,
-        friction_deviation=friction.deviation,
-        friction_scatter_assumed=friction.assumed,
-        extrapolation=friction.extrapolation,
-        cage_mass=pocket.mass,
-        ball_cage_stiffness=pocket.stiffness,
-        pocket_clearance=pocket.clearance,
-        land_clearance=pocket.land or None,
-        restitution_factor=eta,
-        reason=NOT_FINISHED,
-    )
+    values: dict[str, Any] = {
+        "name": name,
+        "friction": friction.mean,
+        "friction_error": friction.error,
+        "friction_deviation": friction.deviation,
+        "friction_scatter_assumed": friction.assumed,
+        "extrapolation": friction.extrapolation,
+        "cage_mass": pocket.mass,
+        "ball_cage_stiffness": pocket.stiffness,
+        "pocket_clearance": pocket.clearance,
+        "land_clearance": pocket.land or None,
+        "restitution_factor": eta,
+    }
     judgement = found.get(Asked(pocket, friction.mean))
     if judgement is None:
-        return row
+        return NotFinished(**values, reason=NOT_FINISHED)
     if broken := not_finite(judgement):
-        return replace(row, reason=broken)
-    is_own = environment == question.environment
-    row = replace(row, judgement=judgement, over_inputs=found.get(Case(name)) if is_own else None)
+        return NotFinished(**values, reason=broken)
+    values["judgement"] = judgement
+    values["over_inputs"] = found.get(Case(name)) if environment == question.environment else None
     threshold = _threshold(question, found, pocket, friction)
     limit = _of_pocket(question, found, Limit, pocket)
     by_paper = Asked(pocket, friction.mean, True)
@@ -417,9 +415,9 @@ def _row(
     is_missing = papers is None and by_paper in question.beside
     if threshold is None or is_missing or (limit is None and not question.is_paper):
         missing = "threshold" if question.is_paper else "critical friction, or the paper's answer"
-        return replace(row, reason=f"{judgement.reason} Its {missing}: {NOT_FINISHED}.")
+        return NotFinished(**values, reason=f"{judgement.reason} Its {missing}: {NOT_FINISHED}.")
     return Ranked(
-        **{f.name: getattr(row, f.name) for f in fields(row) if f.name != "reason"},
+        **values,
         reason=reason(threshold, judgement) if question.is_paper else judgement.reason,
         restitution_threshold=threshold.value,
         restitution_threshold_low=threshold.low,
@@ -427,7 +425,7 @@ def _row(
         margin=threshold.value - eta,
         paper_verdict=None if papers is None else papers.verdict,
         paper_probability_stable=None if papers is None else papers.probability_stable,
-        **_safety(limit, friction, question.spreads.get(row.name, 0.0)),
+        **_safety(limit, friction, question.spreads.get(name, 0.0)),
     )
 
 

@@ -197,26 +197,25 @@ def _log(friction: MeanFriction) -> tuple[float, float]:
 Interval = tuple[Ratio, Ratio, Ratio]  # a margin with the low and the high end of its scatter
 
 
-def ranks(margins: Sequence[Interval], tied: Callable[[int, int], bool] | None = None) -> list[int]:
+def ranks(margins: Sequence[Interval], tied: Callable[[int, int], bool]) -> list[int]:
     """Rank of each margin, the largest first.
 
     The best one leads the first group. Those that do not differ from it beyond their scatter are tied with
     it; the best of the others leads the next group, and so on. Tied ones share the lowest rank (1, 1, 3).
     As only the leader is compared, a chain of small steps does not tie the first with the last. `tied`
-    compares a candidate with its leader; by default their intervals are compared.
+    compares a candidate with its leader.
     """
-    alike = tied or (lambda i, leader: _meet(margins[i], margins[leader]))
     order = sorted(range(len(margins)), key=lambda i: (-margins[i][0], -margins[i][2]))
     found = [0] * len(margins)
     leader, rank = None, 0
     for place, i in enumerate(order, start=1):
-        if leader is None or not alike(i, leader):
+        if leader is None or not tied(i, leader):
             leader, rank = i, place
         found[i] = rank
     return found
 
 
-def _meet(other: Interval, leader: Interval) -> bool:
+def meet(other: Interval, leader: Interval) -> bool:
     """Whether the interval of the smaller margin reaches that of its leader."""
     return other[2] >= leader[1]
 
@@ -239,7 +238,7 @@ def same_rank(
         return True
     if all(getattr(row, name) == getattr(leader, name) for name in POCKET):
         return may_be_lower(known[row.name], known[leader.name])
-    return _meet(interval(row), interval(leader))
+    return meet(interval(row), interval(leader))
 
 
 def safety_interval(row: Ranked) -> Interval:

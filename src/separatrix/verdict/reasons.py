@@ -85,15 +85,7 @@ class CageMotion(Spelled):
 
 
 def cage_motion(ensemble: Ensemble, kick: int) -> CageMotion | None:
-    """Class of the motion that most runs from one kick end in; None if most are unresolved.
-
-    Parameters
-    ----------
-    ensemble : Ensemble
-        The runs.
-    kick : int
-        Place of the kick in the ensemble.
-    """
+    """Class of the motion that most runs from the kick at this place end in; None if most are unresolved."""
     outcome = ensemble.outcome[kick]
     counts = {one: int(np.count_nonzero(outcome == one)) for one in RunOutcome}
     unresolved, rolls = counts.pop(RunOutcome.UNRESOLVED), counts.pop(RunOutcome.ROLLS)
@@ -159,13 +151,13 @@ def settles(cage: MovingCage, ensemble: Ensemble, kick: int) -> str:
     share, speed = _share(settled | rolling), ensemble.kicks[kick]
     said = f"{share} of the runs {ends} from the worst disturbance, {speed:g} m/s"
     if np.count_nonzero(rolling) > np.count_nonzero(settled):
-        force = _median(ensemble.largest_contact_force[kick][rolling])
-        power = _median(ensemble.pocket_power[kick][rolling])
+        force = median(ensemble.largest_contact_force[kick][rolling])
+        power = median(ensemble.pocket_power[kick][rolling])
         many = f"{100.0 * float(rolling.mean()):.0f} %"
         said += f"; {many} roll, with up to {_three(force)} N in a pocket, fed {_watt(power)} (medians)"
-    elif (force := _median(ensemble.rubbing_force[kick][settled])) > 0.0:
-        speed = _median(ensemble.rubbing_speed[kick][settled])
-        power = cage.land_friction * _median((ensemble.rubbing_force * ensemble.rubbing_speed)[kick][settled])
+    elif (force := median(ensemble.rubbing_force[kick][settled])) > 0.0:
+        speed = median(ensemble.rubbing_speed[kick][settled])
+        power = cage.land_friction * median((ensemble.rubbing_force * ensemble.rubbing_speed)[kick][settled])
         rubs = f"{_three(force)} N at {_three(speed)} m/s ({_watt(power)})"
         said += f"; the cage then rubs on its land with {rubs}"
     return f"{said}.{few_kept(cage, ensemble)}{few_left(ensemble)}"
@@ -254,7 +246,7 @@ def few_kept(cage: MovingCage, ensemble: Ensemble) -> str:
 
 
 def _lively(ensemble: Ensemble, kept: Mask) -> str:
-    energy, power = (_median(values[kept]) for values in (ensemble.end_energy, ensemble.land_power))
+    energy, power = (median(values[kept]) for values in (ensemble.end_energy, ensemble.land_power))
     force = float(ensemble.largest_land_force[kept].max())
     return f"{_three(1e3 * energy)} mJ, fed {_watt(power)}, up to {_three(force)} N on the land"
 
@@ -289,13 +281,14 @@ def drift(cage: MovingCage, ensemble: Ensemble, kick: int) -> str:
         seen = "without pocket clearance nothing holds its centre"
     rate = drift_rate_law(cage)
     if rate > 0.0:
-        measured = _median(ensemble.drift_rate[kick][ensemble.outcome[kick] != RunOutcome.WHIRLS])
+        measured = median(ensemble.drift_rate[kick][ensemble.outcome[kick] != RunOutcome.WHIRLS])
         seen += f", and by the linear law it grows e-fold every {_three(1.0 / rate)} s"
         seen += f" ({_three(rate)} 1/s; measured {_three(measured)} 1/s)"
     return f"The cage has no land and drifts: {seen}."
 
 
-def _median(values: Array) -> float:
+def median(values: Array) -> float:
+    """Median of some runs; 0 of none."""
     return float(np.median(values)) if values.size else 0.0
 
 

@@ -11,17 +11,19 @@ from typing import Any
 import numpy as np
 
 from separatrix.cage.closed_forms import moving_mass
+from separatrix.cage.disturbance import settings_for
 from separatrix.cage.moving_cage import MovingCage, moving_cage
 from separatrix.chain.solution import Solution
 from separatrix.ground.units import MetrePerSecond, Ratio
 from separatrix.study.study import BallModel, StabilitySettings
 from separatrix.verdict.crossing import (
     SEARCHED_FRICTION,
-    GrowthCounter,
     Side,
     ends_of,
+    notes_of,
     outermost,
     powers_between,
+    responses,
 )
 from separatrix.verdict.judgement import ENOUGH, NORMAL_95, transmitted_force, whirl_share
 from separatrix.verdict.long_jobs import Runner
@@ -118,22 +120,21 @@ def cage_limit(
 def _limit(
     cage: MovingCage, settings: StabilitySettings, runner: Runner, guess: Ratio | None = None
 ) -> CageLimit:
-    counter, estimate = GrowthCounter(cage, settings, runner), hand_estimate(cage)
-    settings = counter.settings
-    responses = {kick: counter.response(None, kick) for kick in settings.kicks}
-    found, kick = outermost(responses, 0.5, settings.runs, estimate if guess is None else guess)
+    estimate, settings = hand_estimate(cage), settings_for(settings, cage)
+    counts = responses(cage, settings, settings.kicks, runner)
+    found, kick = outermost(counts, 0.5, settings.runs, estimate if guess is None else guess)
     value, low, high = ends_of(found)
     if isinstance(found, Side):
         value, low, high = (0.0, 0.0, 0.0) if found is Side.ABOVE else (None, SEARCHED_FRICTION, None)
     return CageLimit(
-        steepness=responses[kick].steepness(value, 0.5) if value else None,
+        steepness=counts[kick].steepness(value, 0.5) if value else None,
         own_critical_friction=value,
         own_critical_friction_low=low or 0.0,
         own_critical_friction_high=high,
         critical_kick=kick,
         critical_ball=ball_words(cage),
         estimated_critical_friction=estimate,
-        notes=tuple(note for _, response in sorted(responses.items()) for note in response.notes),
+        notes=notes_of(counts),
     )
 
 

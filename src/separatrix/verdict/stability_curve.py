@@ -19,12 +19,13 @@ from separatrix.verdict.crossing import (
     END_RUNS,
     SEARCHED_FRICTION,
     Found,
-    GrowthCounter,
     Side,
     cage_at,
     ends_of,
+    notes_of,
     outermost,
     powers_between,
+    responses,
 )
 from separatrix.verdict.long_jobs import Load, Runner
 
@@ -98,33 +99,24 @@ def critical_friction(
     restitution_factor: Ratio | None,
     settings: StabilitySettings,
     *,
-    counter: GrowthCounter | None = None,
+    runner: Runner | None = None,
     band: bool = True,
 ) -> CriticalFriction:
     """Friction at which half the runs whirl from the reference kick, and the band over all kicks.
 
-    Parameters
-    ----------
-    cage, settings
-        The friction of the cage is replaced, and its race damping unless `restitution_factor` is None.
-    restitution_factor : float or None
-        Nominal, of the whole cage mass [-]; None for the cage's own race damping.
-    counter : GrowthCounter, optional
-        Counts the runs.
-    band : bool
-        Whether the other kicks and the band are wanted; without it half the runs are enough.
+    The friction of the cage is replaced, and its race damping by that of a nominal restitution factor, of
+    the whole cage mass [-]; None keeps its own. Without the other kicks and the `band` half the runs are
+    enough.
     """
-    counts = counter or GrowthCounter(cage, settings)
-    settings, eta = counts.settings, restitution_factor
-    damped = counts.cage_at(None if eta is None else min(eta, 0.9), 0.0)
-    guess = 0.8 * linear_critical_friction(damped)
+    settings, eta = settings_for(settings, cage), restitution_factor
+    guess = 0.8 * linear_critical_friction(cage_at(cage, None if eta is None else min(eta, 0.9), 0.0))
     reference = settings.middle_kick
-    responses = {kick: counts.response(eta, kick) for kick in {*settings.kicks, reference}}
+    counts = responses(cage_at(cage, eta, 0.0), settings, {*settings.kicks, reference}, runner or Runner())
     most = max(1, round((MIDDLE_RUNS if band else END_RUNS) * settings.runs))
-    found = responses[reference].crossing(0.5, most, guess)
+    found = counts[reference].crossing(0.5, most, guess)
     ends: list[tuple[Found, Ratio, MetrePerSecond]] = [(found, 0.5, reference)]
     if band:
-        at, of_kicks = ends_of(found)[0] or guess, {kick: responses[kick] for kick in settings.kicks}
+        at, of_kicks = ends_of(found)[0] or guess, {kick: counts[kick] for kick in settings.kicks}
         for share, way in ((BAND_FEW, 1), (BAND_MOST, -1)):
             end, kick = outermost(of_kicks, share, settings.runs, at / APART**way, way)
             ends.append((end, share, kick))
@@ -137,7 +129,7 @@ def critical_friction(
         **values,
         side=found if isinstance(found, Side) else None,
         reason="; ".join(dict.fromkeys(reasons)) or None,
-        notes=tuple(note for _, response in sorted(responses.items()) for note in response.notes),
+        notes=notes_of(counts),
     )
 
 
@@ -210,17 +202,18 @@ def stability_curve(
     the points that were finished, if any was.
     """
     runner = runner or Runner()
-    counter, factors = GrowthCounter(cage, settings, runner), settings.restitution_factors or FACTORS
+    settings = settings_for(settings, cage)
+    factors = settings.restitution_factors or FACTORS
 
     def curve(found: dict[Ratio | None, CriticalFriction]) -> StabilityCurve:
         complete, here = len(found) == 1 + len(factors), found.pop(None, None)
         return curve_of_points(cage, settings, found.values(), here=here, complete=complete)
 
     return runner.work_out(
-        lambda eta: critical_friction(cage, eta, settings, counter=counter),
+        lambda eta: critical_friction(cage, eta, settings, runner=runner),
         [None, *factors],
         into=curve,
-        load=lambda _: expected_load(counter.settings, band=True),
+        load=lambda _: expected_load(settings, band=True),
     )
 
 
@@ -235,7 +228,7 @@ def curve_of_points(
 ) -> StabilityCurve:
     """Return the curve of the finished points, rising restitution factors first, with its limits."""
     settings = settings_for(settings, cage)
-    ordered = rising(points)
+    ordered = sorted(points, key=lambda point: point.restitution_factor)
     return StabilityCurve(
         curve=tuple(ordered),
         here=here,
@@ -298,18 +291,13 @@ def own_threshold(
     cage: MovingCage, settings: StabilitySettings, friction: Ratio, runner: Runner
 ) -> RestitutionThreshold:
     """Threshold of one friction; the curve is followed no further than it can lie."""
-    counter, points = GrowthCounter(cage, settings, runner), list[CriticalFriction]()
+    points: list[CriticalFriction] = []
     for eta in threshold_factors(settings):
-        point = critical_friction(cage, eta, settings, counter=counter, band=False)
+        point = critical_friction(cage, eta, settings, runner=runner, band=False)
         points.append(point)
         if max(point.height, point.scatter_high or 0.0) < friction:
             break
     return restitution_threshold(points, friction)
-
-
-def rising(points: Iterable[CriticalFriction]) -> list[CriticalFriction]:
-    """Return the points in the order of their restitution factors."""
-    return sorted(points, key=lambda point: point.restitution_factor)
 
 
 def threshold_factors(settings: StabilitySettings) -> Sequence[Ratio]:

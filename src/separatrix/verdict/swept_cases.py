@@ -291,42 +291,39 @@ def _swept(
     study: Study, found: SweptCase, case: Case, runner: Runner, *, verdicts: bool, margins: bool
 ) -> SweptCase:
     """One case, as far as the chain goes."""
+    known: dict[str, Any] = {}
     try:
         asked = varied(study, case)
         solution = solve(asked)
         bearing = solution.bearing
-        values: dict[str, Any] = {}
         for race in ("inner", "outer"):
             at = getattr(bearing, race)
-            values[f"load_{race}"] = at.load
-            values[f"contact_angle_{race}"] = at.contact_angle
-            values[f"max_pressure_{race}"] = at.ellipse.max_pressure
-            values[f"spin_roll_ratio_{race}"] = at.spin_roll_ratio
-        values |= orders(asked.operation, asked.bearing.ball_count, bearing.cage_speed)
-        found = replace(found, cage_speed=bearing.cage_speed, **values)
-        slopes = solution.slopes
-        found = replace(found, slope_inner=slopes.inner.slope, slope_outer=slopes.outer.slope)
-        if study.cage is None:
-            return found
-        eta, design = solution.restitution, solution.design
-        found = replace(
-            found,
-            ball_cage_stiffness=eta.ball_cage_stiffness,
-            race_damping=eta.race_damping,
-            damping_ratio=eta.damping_ratio,
-            restitution_factor=eta.restitution_factor,
-            pocket_clearance=design.pocket_clearance,
-            land_clearance=design.land_clearance,
-            linear_whirl_frequency=linear_whirl_frequency(moving_cage(solution, 0.0)),
-            ball_cage_friction=None if solution.friction is None else solution.friction.mean,
-        )
-        if margins or verdicts:
-            require_friction(asked)
-        if margins:
-            found = replace(found, **_margin(solution, runner))
-        return replace(found, **_verdict(solution, runner)) if verdicts else found
+            known[f"load_{race}"] = at.load
+            known[f"contact_angle_{race}"] = at.contact_angle
+            known[f"max_pressure_{race}"] = at.ellipse.max_pressure
+            known[f"spin_roll_ratio_{race}"] = at.spin_roll_ratio
+        known |= orders(asked.operation, asked.bearing.ball_count, bearing.cage_speed)
+        known["cage_speed"] = bearing.cage_speed
+        known |= {f"slope_{race}": getattr(solution.slopes, race).slope for race in ("inner", "outer")}
+        if study.cage is not None:
+            known |= _of_cage(solution)
+            if margins or verdicts:
+                require_friction(asked)
+            known |= _margin(solution, runner) if margins else {}
+            known |= _verdict(solution, runner) if verdicts else {}
     except SeparatrixError as error:
-        return replace(found, reason=str(error))
+        known["reason"] = str(error)
+    return replace(found, **known)
+
+
+def _of_cage(solution: Solution) -> dict[str, Any]:
+    """What the chain gives for the cage of a case."""
+    of_impact = ("ball_cage_stiffness", "race_damping", "damping_ratio", "restitution_factor")
+    of_design = ("pocket_clearance", "land_clearance")
+    known = {name: getattr(solution.restitution, name) for name in of_impact}
+    known |= {name: getattr(solution.design, name) for name in of_design}
+    known["linear_whirl_frequency"] = linear_whirl_frequency(moving_cage(solution, 0.0))
+    return known | {"ball_cage_friction": None if solution.friction is None else solution.friction.mean}
 
 
 def _margin(solution: Solution, runner: Runner) -> dict[str, Any]:

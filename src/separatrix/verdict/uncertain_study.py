@@ -14,11 +14,10 @@ import numpy as np
 from separatrix.cage.ensemble import Ensemble
 from separatrix.cage.moving_cage import MovingCage
 from separatrix.chain.pocket_friction import with_scatter
-from separatrix.ground.errors import InputError
 from separatrix.ground.units import Array, MetrePerSecond, Ratio, Rows
 from separatrix.study.candidates import ranking_question, reference_candidate, required_environment
 from separatrix.study.distribution import described
-from separatrix.study.study import BallModel, Study
+from separatrix.study.study import Study
 from separatrix.verdict.beyond_models import (
     NOT_FINISHED,
     Moved,
@@ -43,7 +42,6 @@ from separatrix.verdict.judgement import (
 from separatrix.verdict.long_jobs import Load, Runner, joined, scattered
 from separatrix.verdict.ranking_records import NotMeasured, measured
 
-FEWEST = 64  # bearings below which no probability is worth a table
 BLOCK = 64  # bearings after which a case is judged
 RISK: Ratio = 1e-3
 """Probability, at each judgement, that a case is ended whose true share lies on the other side of a limit."""
@@ -111,20 +109,17 @@ class UncertainStudy:
 def uncertain_study(study: Study, bearings: int, *, runner: Runner | None = None) -> UncertainStudy:
     """Draw bearings from the uncertain inputs of a study and judge the cages of every candidate.
 
-    Their number is best a power of two, and at least `FEWEST`. A friction without stated scatter has the
+    Their number is best a power of two. A friction without stated scatter has the
     study's default one, a guess. The numbers do not depend on the runner.
 
     Raises
     ------
     InputError
-        Too few bearings, no candidates, or no draw makes a bearing.
+        No candidates, or no draw makes a bearing.
     Interrupted
         With the answer to what was finished, if anything was.
     """
     required_environment(study, ranking_question(study))
-    if bearings < FEWEST:
-        cure = "Powers of two spread most evenly: 512."
-        raise InputError("--samples", f"must be at least {FEWEST}", got=str(bearings), cure=cure)
     drawn, runner = drawn_bearings(study, bearings), runner or Runner()
     return runner.work_out(
         lambda case: counted(drawn, case, runner),
@@ -233,7 +228,7 @@ def counted(bearings: DrawnBearings, case: Case, runner: Runner) -> Counted:
         ran.append(runs)
         return found
 
-    return judge_by_ball(bearings.central[case.candidate], bearings.central_friction(case), judged), ran[-1]
+    return judge_by_ball(bearings.central[case.candidate], bearings.stated[case].mean, judged), ran[-1]
 
 
 def counted_among(bearings: DrawnBearings, case: Case, runner: Runner, cage: MovingCage) -> Counted:
@@ -244,13 +239,12 @@ def counted_among(bearings: DrawnBearings, case: Case, runner: Runner, cage: Mov
     the kicks that are left.
     """
     capacity = transmitted_force(bearings.central[case.candidate])
-    ball = None if cage.free_ball is None else BallModel.FREE
     parts: list[Ensemble] = []
     left_out: list[KickCount] = []
     total, kicks = len(bearings.runs), list(bearings.kicks)
     for first in range(0, total, BLOCK):
         places = range(first, min(first + BLOCK, total))
-        parts.append(bearings.ensemble(case, kicks, places, runner, ball=ball))
+        parts.append(bearings.ensemble(case, kicks, places, runner, cage))
         found = joined(parts)
         judged = judge(cage, found, capacity=capacity)
         if is_plain(judged):

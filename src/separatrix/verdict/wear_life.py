@@ -6,9 +6,9 @@ The film on a track place balances wear and deposit, with the coverage that is l
           (1 - \theta) f_{bare}
 
 with :math:`W = K_f\, I\, n` of the passes (`chain.slip_work`) and the deposit D of what the balls wear off
-the pockets (Archard, :math:`K_c \sum N v`). The pockets open by what is worn. Critical friction, and the work
-of the pockets of a calm and of a whirling cage, are tabulated over race friction and pocket clearance; every
-draw of the wear coefficients and frictions is led along that table. docs/theory/life.md.
+the pockets (Archard, :math:`K_c \sum N v`). Pockets and land open by what is worn. Critical friction, and the
+work of pockets and land of a calm and of a whirling cage, are tabulated over race friction and pocket
+clearance; every draw of the wear coefficients and frictions is led along that table. docs/theory/life.md.
 """
 
 from __future__ import annotations
@@ -34,6 +34,8 @@ STEPS_A_DECADE = 16
 HALF: Ratio = 0.5
 """Probability of a whirl from which a cage counts as unstable."""
 
+SLIDING = ("calm_sliding", "whirl_sliding", "calm_land_sliding", "whirl_land_sliding")
+
 LEAST: Ratio = 1e-9
 LEAST_WEAR = 1e-300
 
@@ -54,9 +56,17 @@ class LifeTable:
     calm_sliding: Annotated[Array, "W", ("race_friction", "pocket_clearance")]
     """Force times sliding speed of all pockets of a cage that settles."""
     whirl_sliding: Annotated[Array, "W", ("race_friction", "pocket_clearance")]  # the same of one that whirls
+    calm_land_sliding: Annotated[Array, "W", ("race_friction", "pocket_clearance")]
+    """Force times sliding speed on the lands of a cage that settles."""
+    whirl_land_sliding: Annotated[Array, "W", ("race_friction", "pocket_clearance")]  # of one that whirls
+    land_exponent: float  # of the land's clearance, to whose power the critical friction goes
+    land_widening: Ratio  # of the land up to which that was computed; 1 where its wear is not followed
 
-    def at(self, race_friction: Array, clearance: Array) -> dict[str, Array]:
-        """What the table holds at these places, linear in logarithms between its own; held at its ends."""
+    def at(self, race_friction: Array, clearance: Array, widening: Array | float = 1.0) -> dict[str, Array]:
+        """What the table holds at these places, linear in logarithms between its own; held at its ends.
+
+        `widening` is the clearance of the land over that of a new one.
+        """
         ends = self.pocket_clearance[[0, -1]]
         place = np.stack(
             (
@@ -66,17 +76,19 @@ class LifeTable:
             axis=-1,
         )
         axes = np.log(self.race_friction), np.log(self.pocket_clearance)
-        names = ("critical_friction", "steepness", "calm_sliding", "whirl_sliding")
+        names = ("critical_friction", "steepness", *SLIDING)
         known = np.stack([np.log(np.maximum(getattr(self, name), LEAST)) for name in names], axis=-1)
         found = np.exp(RegularGridInterpolator(axes, known)(place))
-        return dict(zip(names, np.moveaxis(found, -1, 0), strict=True))
+        values = dict(zip(names, np.moveaxis(found, -1, 0), strict=True))
+        values["critical_friction"] *= np.minimum(widening, self.land_widening) ** self.land_exponent
+        return values
 
 
 class Worn(NamedTuple):
     """Draws of what wear depends on, each of shape (draw,)."""
 
     film_wear: Array  # K of the film [m3/(N m)]
-    cage_wear: Array  # K of the pockets
+    cage_wear: Array  # K of the pockets and of the land
     transferred: Array  # share of what is worn off the pockets that stays on tracks and balls
     thickness: Array  # of the film at the start [m]
     coverage: Array  # thickness at which the film covers 63 % [m]
@@ -88,15 +100,23 @@ class Worn(NamedTuple):
     reservoir: Array  # volume of the cage that may be worn off, infinite without one [m3]
 
 
+class Land(NamedTuple):
+    """What wears on the lands of a cage."""
+
+    area: SquareMetre  # of all lands, all around: a worn cage has turned on its ring
+    clearance: Metre  # of a new one, diametral
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BearingWear:
-    """What of a bearing wears: its tracks with their loads, its pockets."""
+    """What of a bearing wears: its tracks with their loads, its pockets, its land."""
 
     tracks: tuple[TrackWork, TrackWork]  # of the inner and of the outer race
     loads: tuple[float, float]  # of the most loaded ball on them
     ball_diameter: Metre
     ball_count: int
     clearance: Metre  # of a new pocket
+    land: Land | None = None  # None without one, or without its width
 
     @property
     def area(self) -> SquareMetre:
@@ -146,7 +166,8 @@ class Course:
     pocket_friction: Array
     clearance: Array
     films: tuple[Array, Array]  # mean thickness on the inner and the outer track
-    volume: Array  # worn off the cage [m3]
+    land_clearance: Array  # 0 where its wear is not followed [m]
+    volume: Array  # worn off the pockets [m3]
     kept: Array  # deposit over the wear of a whole film, of the track that wears faster [-]
     phase: Array  # which is the most unstable one
 
@@ -168,13 +189,13 @@ def course(phases: Sequence[Phase], worn: Worn, horizon: Second) -> Course:
     time = np.concatenate(([0.0], later))
     draws, work = worn.film_wear.size, work_done(phases)
     films = [np.repeat(worn.thickness[:, None], each.size, axis=1) for each in work]
-    volume = np.zeros(draws)
+    volume, land_volume = np.zeros(draws), np.zeros(draws)
     area = min(one.bearing.area for one in phases)
     hold = worn.coverage[:, None]
     rows: list[list[Array]] = []
     before = 0.0
     for now in time:
-        *state, sliding = _state(phases, worn, films, volume)
+        *_, sliding, on_land = _state(phases, worn, films, volume, land_volume)
         step = now - before
         debris = worn.cage_wear * sliding * (volume < worn.reservoir)
         deposit = (worn.transferred * debris / area)[:, None]
@@ -184,9 +205,10 @@ def course(phases: Sequence[Phase], worn: Worn, horizon: Second) -> Course:
             films[i] = film_after(films[i], wear, deposit, hold, step)
             fastest = np.maximum(fastest, wear.max(axis=1))
         volume = np.minimum(volume + debris * step, worn.reservoir)
-        state = _state(phases, worn, films, volume)[:-1]
+        land_volume = land_volume + worn.cage_wear * on_land * step
+        state = _state(phases, worn, films, volume, land_volume)
         kept = np.divide(deposit[:, 0], fastest, out=np.full(draws, math.inf), where=fastest > 0.0)
-        rows.append([*state[:4], *(film.mean(axis=1) for film in films), volume, kept, state[4]])
+        rows.append([*state[:5], *(film.mean(axis=1) for film in films), volume, kept, state[5]])
         before = now
     found = [np.stack(each) for each in zip(*rows, strict=True)]
     return Course(
@@ -195,21 +217,27 @@ def course(phases: Sequence[Phase], worn: Worn, horizon: Second) -> Course:
         race_friction=found[1],
         pocket_friction=found[2],
         clearance=found[3],
-        films=(found[4], found[5]),
-        volume=found[6],
-        kept=found[7],
-        phase=found[8].astype(int),
+        land_clearance=found[4],
+        films=(found[5], found[6]),
+        volume=found[7],
+        kept=found[8],
+        phase=found[9].astype(int),
     )
 
 
-def _state(phases: Sequence[Phase], worn: Worn, films: Sequence[Array], volume: Array) -> list[Array]:
-    """P(unstable), race friction, pocket friction, clearance, worst phase, sliding of every draw."""
+def _state(
+    phases: Sequence[Phase], worn: Worn, films: Sequence[Array], volume: Array, land_volume: Array
+) -> list[Array]:
+    """P(unstable), frictions of race and pocket, both clearances, worst phase, sliding in pocket and land."""
     bearing = phases[0].bearing
     depth = worn_depth(volume / (2.0 * bearing.ball_count), bearing.ball_diameter)
     gone = -np.expm1(-depth / worn.worn_depth)
     pocket = worn.pocket_friction + gone * (worn.worn_friction - worn.pocket_friction)
-    clearance = bearing.clearance + 2.0 * depth
-    races, unstable, sliding = list[Array](), list[Array](), np.zeros(volume.size)
+    clearance, land = bearing.clearance + 2.0 * depth, np.zeros(volume.size)
+    if bearing.land:
+        land = bearing.land.clearance + 2.0 * land_volume / bearing.land.area
+    races, unstable = list[Array](), list[Array]()
+    sliding, on_land = np.zeros(volume.size), np.zeros(volume.size)
     for one in phases:
         loads = one.bearing.loads
         race = np.zeros(volume.size)
@@ -217,14 +245,21 @@ def _state(phases: Sequence[Phase], worn: Worn, films: Sequence[Array], volume: 
             covered = (-np.expm1(-film / worn.coverage[:, None])) @ track.share
             mixed = covered * worn.film_friction + (1.0 - covered) * worn.bare_friction
             race += load / sum(loads) * mixed
-        known = one.table.at(race, clearance)
+        known = one.table.at(race, clearance, _widening(bearing, land))
         chance = expit(known["steepness"] * np.log(np.maximum(pocket, LEAST) / known["critical_friction"]))
-        sliding += one.share * ((1.0 - chance) * known["calm_sliding"] + chance * known["whirl_sliding"])
+        calm, whirl, calm_land, whirl_land = (known[name] for name in SLIDING)
+        sliding += one.share * ((1.0 - chance) * calm + chance * whirl)
+        on_land += one.share * ((1.0 - chance) * calm_land + chance * whirl_land)
         races.append(race)
         unstable.append(chance)
     worst = np.argmax(unstable, axis=0)
     each = np.arange(volume.size)
-    return [np.array(unstable)[worst, each], np.array(races)[worst, each], pocket, clearance, worst, sliding]
+    chances, frictions = np.array(unstable)[worst, each], np.array(races)[worst, each]
+    return [chances, frictions, pocket, clearance, land, worst, sliding, on_land]
+
+
+def _widening(bearing: BearingWear, land: Array) -> Array:
+    return land / bearing.land.clearance if bearing.land else np.ones(land.size)
 
 
 def steady_coverage(phases: Sequence[Phase], worn: Worn) -> tuple[Array, Array]:
@@ -257,6 +292,7 @@ class Cause(NamedTuple):
 
     film_worn: Array
     pocket_opened: Array
+    land_opened: Array
     friction_risen: Array
 
 
@@ -265,17 +301,17 @@ def causes(found: Course, phases: Sequence[Phase], worn: Worn, life: Array) -> C
     ends = np.isfinite(life)
     at = np.searchsorted(found.time, np.where(ends, life, found.time[-1])).clip(max=found.time.size - 1)
     each = np.arange(life.size)
-    race, pocket, wide = (
-        one[at, each] for one in (found.race_friction, found.pocket_friction, found.clearance)
-    )
-    whole = worn.film_friction
+    moved_by = found.race_friction, found.pocket_friction, found.clearance, found.land_clearance
+    race, pocket, wide, land = (one[at, each] for one in moved_by)
+    whole, opened = worn.film_friction, _widening(phases[0].bearing, land)
     new = np.full(life.size, phases[0].bearing.clearance)
-    places = ((whole, new), (race, new), (race, wide))
+    places = ((whole, new, 1.0), (race, new, 1.0), (race, wide, 1.0), (race, wide, opened))
     criticals = np.log([[one.table.at(*at)["critical_friction"] for at in places] for one in phases])
-    start, worn_film, both = criticals[found.phase[at, each], :, each].T
+    start, worn_film, both, all_worn = criticals[found.phase[at, each], :, each].T
     moved = Cause(
         start - worn_film,
         worn_film - both,
+        both - all_worn,
         np.log(np.maximum(pocket, LEAST) / np.maximum(worn.pocket_friction, LEAST)),
     )
     return Cause(*(np.where(ends, np.maximum(one, 0.0), 0.0) for one in moved))
@@ -318,6 +354,7 @@ class LifeRow:
     race_friction: Ratio  # mean of both tracks by the load that they carry
     pocket_friction: Ratio  # of ball on cage
     pocket_clearance: Metre  # stop to stop, with what is worn off
+    land_clearance: Metre | None  # diametral, with what is worn off; null where its wear is not followed
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -346,6 +383,7 @@ class Life:
     revolutions_per_second: Hertz  # of ring against ring, mean over the phases
     film_worn: Ratio  # share of the draws that become unstable, mostly because the film is worn
     pocket_opened: Ratio  # mostly because the pockets have opened
+    land_opened: Ratio  # mostly because the land has opened
     friction_risen: Ratio  # mostly because the friction of worn pockets has risen
     reservoir_empty: Ratio  # share of all draws whose reservoir is empty at the horizon
     coverage_calm: Ratio  # of the faster track, at which deposit by a calm cage balances wear; median

@@ -218,8 +218,9 @@ def operation_words(study: Json, varied: Sequence[str] = ()) -> str:
                 yield words.format(key.partition("_")[0], text)
 
     speeds = each("inner_speed", "outer_speed", words="{0} ring {1}")
-    loads = each("axial_load", "radial_load", "moment", words="{1} {0}")
-    return _listed("; ", ", ".join([*speeds, *loads]), " at ".join(each("fluid", "temperature")))
+    loads = each("preload", "axial_load", "radial_load", "moment", words="{1} {0}")
+    pair = each("arrangement", "preload_kind")
+    return _listed("; ", ", ".join([*speeds, *loads, *pair]), " at ".join(each("fluid", "temperature")))
 
 
 def coat_words(study: Json, varied: Sequence[str] = ()) -> str:

@@ -11,7 +11,6 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from separatrix.cage import MovingCage, moving_cage
-from separatrix.chain.contacts import race_tracks, require_rolling
 from separatrix.chain.exact.rolling import rolling_contact
 from separatrix.chain.impact_restitution import Restitution
 from separatrix.chain.race_traction import contact_problem
@@ -130,14 +129,13 @@ def refused(study: Study, *links: Callable[[Solution], object]) -> Iterator[str]
 
 def rolling(solution: Solution) -> None:
     """Refuse what no traction is computed of: a bearing that does not roll, contacts out of their range."""
-    asked = solution.study
-    require_rolling(asked)
-    if asked.traction.model is TractionModel.STRIPS:
+    asked, tracks = solution.study.traction, solution.rolling.tracks
+    if asked.model is TractionModel.STRIPS:
         _ = solution.slopes
         return
-    for track in race_tracks(asked.bearing, asked.film, solution.bearing):
+    for track in tracks:
         if not track.is_idle:
-            rolling_contact(contact_problem(track, asked.traction), columns=COARSE, rows=COARSE)
+            rolling_contact(contact_problem(track, asked), columns=COARSE, rows=COARSE)
 
 
 def impact(solution: Solution) -> None:

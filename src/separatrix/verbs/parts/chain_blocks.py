@@ -5,7 +5,7 @@ from __future__ import annotations
 from separatrix.ground.document import Part
 from separatrix.present.blocks import Block, Cell, Column, Equation, Heading, Level, Table, facts, text_column
 from separatrix.present.quantity_text import cell, fact, fill, named, show
-from separatrix.verbs.parts.answer_page import bearing_facts
+from separatrix.verbs.parts.answer_page import bearing_facts, operation_words
 
 
 def clearance_blocks(found: Part | None) -> list[Block]:
@@ -100,6 +100,29 @@ def heat_blocks(heat: Part | None) -> list[Block]:
             ("Temperatures", fill(heat, warm) if "ball_temperature" in heat else None),
             ("Flash temperatures", fill(heat, flash) if "flash_inner" in heat else None),
             ("Heat into the hotter track", fill(heat, "{track_heat}" + boils)),
+        ),
+    ]
+
+
+def pair_blocks(answer: Part) -> list[Block]:
+    """Return the loads of a preloaded pair, and where it gaps; nothing of a single bearing."""
+    pair = answer.pair
+    if pair is None:
+        return []
+    gap = "no external load: balls leave their grooves first"
+    if pair.preload_kind == "spring":
+        gap = "no external load this way: the spring follows; against the spring, at the preload"
+    elif "gap_load" in pair:
+        gap = fill(pair, "an external axial load of {gap_load} at rest")
+    return [
+        Heading("Preloaded pair"),
+        facts(
+            ("Preload", pair.preload_kind),
+            ("Operation", operation_words(answer.values["study"])),
+            ("This bearing", fill(pair, "axial load {own_axial_load}: the external load presses it")),
+            ("The other bearing", fill(pair, "axial load {other_axial_load}")),
+            ("Offset by the preload", fill(pair, "{ring_offset} of each inner ring at rest")),
+            ("The pair gaps at", gap),
         ),
     ]
 
