@@ -62,7 +62,7 @@ def test_version_is_one_line():
 
 def test_a_reader_that_goes_away_is_no_error():
     """`separatrix check ... | head -1`: status 0, no complaint."""
-    command = [*COMMAND, "check", "cryogenic-turbopump", "--json"]
+    command = [*COMMAND, "check", "cryogenic-turbopump", "--json", "--quiet"]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
         process.stdout.close()
         assert process.stderr.read() == b""

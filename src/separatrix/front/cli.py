@@ -166,7 +166,8 @@ def answered(asked: Tool, given: Given, compute: Callable[[], Document], to: Pat
         with progress_bar("files", quiet=quiet):  # this takes as long again
             save_answer(to, asked, made, page=page)
         if not json and not quiet:
-            what = "Pictures of the tests" if asked.pictures else "Text, figures and data"
+            whole = "Text, figures and data" if made.get("complete", True) else "Text and data"
+            what = "Pictures of the tests" if asked.pictures else whole
             answer(f"\n{what} are in {to}/\n")
     return made
 

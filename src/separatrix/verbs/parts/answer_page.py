@@ -113,8 +113,14 @@ def _materials(study: Json, level: Level) -> list[Block]:
     properties = (text_column(key.replace("_", " "), partial(words, key)) for key in PROPERTIES)
     columns = (text_column("material", itemgetter("name")), *properties)
     caption = "Materials, at the temperature of the study."
-    known = ((name, f"{one['source']} ({one['confidence']})") for name, one in rows.items() if one["source"])
+    known = ((name, _source(one)) for name, one in rows.items() if one["source"])
     return [Table("materials", columns, tuple(rows.values()), caption, level), facts(*known, level=level)]
+
+
+def _source(one: Json) -> str:
+    """Return where a number is from, and how sure it is."""
+    source, confidence = one["source"], one["confidence"]
+    return str(source) if source == confidence else f"{source} ({confidence})"
 
 
 def _frictions(ranking: Json, level: Level) -> list[Block]:
@@ -122,7 +128,7 @@ def _frictions(ranking: Json, level: Level) -> list[Block]:
     columns = (text_column("candidate", itemgetter("name")), *frictions)
     caption = f"Friction of the candidates as measured, with standard deviation. From {ranking['origin']}."
     known = [one for row in ranking["candidates"] for one in row["friction"].values() if one is not None]
-    origins = dict.fromkeys(f"{one['source']} ({one['confidence']})" for one in known)
+    origins = dict.fromkeys(_source(one) for one in known)
     table = Table("frictions", columns, tuple(ranking["candidates"]), caption, level)
     return [table, *(Note(f"Source of the frictions: {one}.", "legend", level) for one in origins)]
 
