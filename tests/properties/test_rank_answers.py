@@ -9,7 +9,7 @@ from sane_studies import sane_text
 from separatrix.front import main
 
 
-@pytest.mark.parametrize("seed", [1, 14, 26])
+@pytest.mark.parametrize("seed", [14, 26])
 def test_no_verdict_is_contradicted_by_its_evidence(seed, tmp_path, capsys):
     """With 8 runs of 50 ms; a hundred studies with default settings: benchmarks/rank_sane_studies.py."""
     study = tmp_path / "sane.toml"

@@ -109,19 +109,6 @@ def small(tmp_path_factory):
     return path
 
 
-@pytest.fixture(scope="module")
-def answers(small):
-    """The answer of every verb to it, computed once."""
-    found = {}
-
-    def answer(verb):
-        if verb not in found:
-            found[verb] = getattr(api, verb)(small, **CALLS.get(verb, {}))
-        return found[verb]
-
-    return answer
-
-
 def options(verb):
     """Return the options of a call as those of the command."""
     words = []
@@ -138,6 +125,20 @@ def folder(small, tmp_path_factory):
     for verb in VERBS:
         assert main([verb, str(small), *options(verb), "--out", str(place / verb), "--quiet"]) == 0
     return place
+
+
+@pytest.fixture(scope="module")
+def answers(small, folder):
+    """The answer of every verb in Python, computed once; runs that the command line kept are taken."""
+    found = {}
+
+    def answer(verb):
+        if verb not in found:
+            kept = {"folder": folder / verb} if verb_named(verb).keeps_runs else {}
+            found[verb] = getattr(api, verb)(small, **CALLS.get(verb, {}), **kept)
+        return found[verb]
+
+    return answer
 
 
 def saved(folder, verb):

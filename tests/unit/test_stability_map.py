@@ -13,7 +13,7 @@ from separatrix.cage import RunOutcome, moving_cage, run_ensemble
 from separatrix.chain.solution import solve
 from separatrix.ground.errors import InputError
 from separatrix.study.reading import read_study
-from separatrix.study.study import MotionModel
+from separatrix.study.study import Arrangement, MotionModel
 from separatrix.verdict.crossing import cage_at
 from separatrix.verdict.judgement import is_calm, judge
 from separatrix.verdict.ledger import NAME, Ledger
@@ -123,10 +123,11 @@ def test_bands_and_margins_of_a_column():
 
 @pytest.fixture(scope="module")
 def rich(tmp_path_factory, study):
-    """Studies that state nearly every number, of a cage in space and of one in the plane, and a plain one."""
+    """Studies that state nearly every number, in space and in the plane; a plain one and a preloaded one."""
     folder = tmp_path_factory.mktemp("rich")
     plain = replace(study, cage=replace(study.cage, motion=MotionModel.PLANE))
-    return [*(read_study(written(folder, text)) for text in (SPACE, PLANE)), plain]
+    pressed = replace(study, operation=replace(study.operation, preload=40.0, arrangement=Arrangement.SINGLE))
+    return [*(read_study(written(folder, text)) for text in (SPACE, PLANE)), plain, pressed]
 
 
 @pytest.mark.parametrize("name", sorted(parameters()))

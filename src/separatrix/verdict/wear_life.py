@@ -59,7 +59,7 @@ class LifeTable:
     calm_land_sliding: Annotated[Array, "W", ("race_friction", "pocket_clearance")]
     """Force times sliding speed on the lands of a cage that settles."""
     whirl_land_sliding: Annotated[Array, "W", ("race_friction", "pocket_clearance")]  # of one that whirls
-    land_exponent: float  # of the land's clearance, to whose power the critical friction goes
+    land_exponent: Ratio  # of the land's clearance, to whose power the critical friction goes
     land_widening: Ratio  # of the land up to which that was computed; 1 where its wear is not followed
 
     def at(self, race_friction: Array, clearance: Array, widening: Array | float = 1.0) -> dict[str, Array]:
