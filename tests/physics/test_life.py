@@ -179,15 +179,25 @@ def test_a_land_opens_all_around_and_takes_the_critical_friction_with_it():
     phases = [replace(PHASE[0], bearing=bearing)]
     draws = worn(cage_wear=1e-12, pocket_friction=0.3, worn_friction=0.3)
     found = course(phases, draws, 1e5)
-    assert found.land_clearance[-1, 0] == pytest.approx(2e-4 + 2.0 * 1e-12 * 1e5 / 1e-3, rel=1e-6)
+    worn_off = 2.0 * 1e-12 * 1e5 / 1e-3
+    assert found.land_clearance[-1, 0] == pytest.approx(2e-4 + worn_off, rel=1e-6)  # calm but for 1e-9
     ends = lives(found)
     race = 0.05 + 0.35 * math.exp(-5.0)
     time = (0.02 / race / 0.3 - 1.0) * 2e-4 * 1e-3 / 2.0 / 1e-12
     assert ends[0] == pytest.approx(time, rel=0.16)  # a step of slow time
     why = causes(found, phases, draws, ends)
-    assert why.land_opened[0] == pytest.approx(math.log(0.02 / race / 0.3), abs=0.16)
-    assert why.film_worn[0] == pytest.approx(math.log(race / 0.05), rel=1e-6)
-    assert why.pocket_opened[0] == pytest.approx(0.0, abs=1e-9)
+    wide = found.land_clearance[np.searchsorted(found.time, ends[0]), 0] / 2e-4
+    assert why.land_opened[0] == pytest.approx(math.log(wide), rel=1e-12)  # critical friction as one over it
+    assert why.film_worn[0] == pytest.approx(math.log(race / 0.05), rel=1e-12)  # rounding, as in the next
+    assert why.pocket_opened[0] == pytest.approx(0.0, abs=1e-12)
+
+
+def test_a_cage_that_leaves_its_land_alone_does_not_hide_one_that_rubs():
+    """Half of the work between no work and some, half way in the logarithm of the clearance."""
+    table = replace(TABLE, calm_land_sliding=np.array([[0.0, 2.0], [0.0, 2.0]]))
+    found = table.at(np.array([0.1]), np.array([3e-4 * math.sqrt(10.0)]))
+    assert found["calm_land_sliding"][0] == pytest.approx(1.0, rel=1e-12)  # rounding
+    assert found["critical_friction"][0] == pytest.approx(0.2, rel=1e-12)
 
 
 def test_a_worn_pocket_goes_over_to_its_friction():

@@ -67,6 +67,9 @@ LAND_AT = 1
 """Race friction of the table, by its place, at which the land is widened for its exponent."""
 
 NO_WIDTH = "The wear of the land is not followed: [cage] land_width is not given."
+NO_EXPONENT = (
+    "The land opens, but its critical friction is beyond what was searched: it stays that of a new land."
+)
 
 NARROWER = (1.0, 0.5, 0.2, 0.05)
 """Parts of that widening, the first that the gap between the balls allows."""
@@ -475,6 +478,7 @@ def _life(
     at_10, at_50, at_90 = (_quantile(life, share, speed) for share in (0.1, 0.5, 0.9))
     table, land = phases[0].table, phases[0].bearing.land
     notes += _beyond(found.clearance[-1], float(table.pocket_clearance[-1]), "the pockets open")
+    notes += [NO_EXPONENT] if land and table.land_widening == 1.0 else []
     if land and table.land_widening > 1.0:
         notes += _beyond(found.land_clearance[-1], table.land_widening * land.clearance, "the land opens")
     return Life(

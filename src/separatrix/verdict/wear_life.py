@@ -34,7 +34,8 @@ STEPS_A_DECADE = 16
 HALF: Ratio = 0.5
 """Probability of a whirl from which a cage counts as unstable."""
 
-SLIDING = ("calm_sliding", "whirl_sliding", "calm_land_sliding", "whirl_land_sliding")
+IN_POCKETS, ON_LANDS = ("calm_sliding", "whirl_sliding"), ("calm_land_sliding", "whirl_land_sliding")
+"""Works of the table; those on lands may be none at all, and are taken linearly between its places."""
 
 LEAST: Ratio = 1e-9
 LEAST_WEAR = 1e-300
@@ -76,10 +77,12 @@ class LifeTable:
             axis=-1,
         )
         axes = np.log(self.race_friction), np.log(self.pocket_clearance)
-        names = ("critical_friction", "steepness", *SLIDING)
-        known = np.stack([np.log(np.maximum(getattr(self, name), LEAST)) for name in names], axis=-1)
-        found = np.exp(RegularGridInterpolator(axes, known)(place))
-        values = dict(zip(names, np.moveaxis(found, -1, 0), strict=True))
+        names = ("critical_friction", "steepness", *IN_POCKETS)
+        known = [np.log(np.maximum(getattr(self, name), LEAST)) for name in names]
+        known += [getattr(self, name) for name in ON_LANDS]
+        found = np.moveaxis(RegularGridInterpolator(axes, np.stack(known, axis=-1))(place), -1, 0)
+        found[: len(names)] = np.exp(found[: len(names)])
+        values = dict(zip((*names, *ON_LANDS), found, strict=True))
         values["critical_friction"] *= np.minimum(widening, self.land_widening) ** self.land_exponent
         return values
 
@@ -247,7 +250,7 @@ def _state(
             race += load / sum(loads) * mixed
         known = one.table.at(race, clearance, _widening(bearing, land))
         chance = expit(known["steepness"] * np.log(np.maximum(pocket, LEAST) / known["critical_friction"]))
-        calm, whirl, calm_land, whirl_land = (known[name] for name in SLIDING)
+        calm, whirl, calm_land, whirl_land = (known[name] for name in (*IN_POCKETS, *ON_LANDS))
         sliding += one.share * ((1.0 - chance) * calm + chance * whirl)
         on_land += one.share * ((1.0 - chance) * calm_land + chance * whirl_land)
         races.append(race)
