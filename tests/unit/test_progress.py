@@ -70,13 +70,13 @@ def test_a_real_job_tells_its_end_within_a_factor_of_two(path, monkeypatch):
     assert all(0.5 < one < 2.0 for one in told), (min(told), max(told), told[:5])
 
 
-def test_a_slow_place_under_way_is_left_at_its_own_pace():
-    """Two places took 1 s each; the third has made its runs in 10 s: at least a fifth of that is left."""
+def test_what_is_left_of_a_kind_goes_on_at_its_own_pace():
+    """Runs of one kind take ten times as long; its pace and that of all count alike, by one load each."""
     work = Work()
-    work.loads.update(dict.fromkeys("abc", Load(10.0)))
-    for place, spent in (("a", 1.0), ("b", 1.0), ("c", 10.0)):
+    work.loads.update(dict.fromkeys(("slow", "slow too", 1, 2), Load(10.0)))
+    for place, spent in (("slow", 10.0), (1, 1.0)):
         work.spend(place, spent, 10.0)
-    for place in "ab":
         work.finish(place)
     done, total = work.so_far(1)
-    assert (done, total - done) == (12.0, pytest.approx(2.0))  # rounding
+    slow, fast = (10.0 + 5.5) / 20.0, (1.0 + 5.5) / 20.0
+    assert (done, total - done) == (11.0, pytest.approx(10.0 * slow + 10.0 * fast))  # rounding

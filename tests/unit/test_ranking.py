@@ -278,7 +278,8 @@ def test_a_row_whose_evidence_is_not_finite_has_a_reason_and_no_verdict(bad):
     """Every number of it is absent, so that the answer can be written."""
     eta = SimpleNamespace(restitution_factor=0.3)
     pocket = Pocket(0.02, 1e6, 1e-4, 0.0)
-    question = SimpleNamespace(pockets={"A": pocket}, cages={pocket: SimpleNamespace(restitution=eta)})
+    cages = {pocket: SimpleNamespace(restitution=eta)}
+    question = SimpleNamespace(pockets={"A": pocket}, cages=cages, spreads={})
     evidence = judgement(largest_contact_force=float(bad))
     found = {Asked(pocket, 0.1): evidence}
     row = _row(question, found, "A", "air", MeanFriction(0.1, 0.01))

@@ -59,14 +59,14 @@ def work_of(**loads):
 
 
 def test_what_is_left_goes_on_at_the_pace_of_what_was_made():
-    """Nothing is known before the first run; a run of a finished place counts four times one under way."""
+    """Nothing is known before the first run; a run of a place under way counts 0.7 of one of a finished place."""
     work = work_of(a=Load(100), b=Load(100), c=Load(100, dear=2.0))
     assert work.so_far(1) == (0.0, math.inf)
     work.spend("a", 3.0, 70)
     work.finish("a")
     assert work.so_far(1) == (3.0, 3.0 + 3.0 + 6.0)
     work.spend("b", 1.0, 50)
-    assert work.so_far(1) == (4.0, pytest.approx(4.0 + 250.0 * 4.0 / 112.5))
+    assert work.so_far(1) == (4.0, pytest.approx(4.0 + 250.0 * 4.0 / 135.0))
 
 
 def test_kept_runs_say_nothing_of_the_others():
@@ -77,7 +77,7 @@ def test_kept_runs_say_nothing_of_the_others():
     work.finish("kept")
     assert work.so_far(1)[1] == math.inf
     work.spend("new", 6.0, 50)
-    assert work.so_far(1)[1] == pytest.approx(0.001 + 6.0 + 72.0)
+    assert work.so_far(1)[1] == pytest.approx(0.001 + 6.0 + 150.0 * 6.0 / 35.0)
 
 
 def test_the_first_tenth_of_scattered_places_resembles_all():

@@ -36,8 +36,8 @@ REDRAWN_EVERY: Second = 0.2
 FIRST_PART = 0.1
 """Share of the work after which the time of all is estimated."""
 
-ENOUGH: Second = 1.0
-"""Work in which nothing is estimated."""
+ENOUGH: Second = 5.0
+"""Work in which nothing is estimated: what is over in ten needs no estimate."""
 
 PATIENCE: Second = 1.6
 """Time that an interrupt waits for the work to end by itself, with what was finished."""
@@ -188,6 +188,14 @@ class Pace:
             self.left = (now - self._begun) * rest / done
 
 
+def compiled_once() -> str:
+    """Return that, and why, in words that go on."""
+    from separatrix.ground.compiling import COMPILING
+
+    why = f": {COMPILING.reason}" if COMPILING.reason else ""
+    return f"compiled once on this machine, about a minute in all{why}."
+
+
 class Life(Pace):
     """How far a verb is, in words. Its title is verb and study."""
 
@@ -197,12 +205,9 @@ class Life(Pace):
 
     def compiling(self) -> None:
         """Say once that kernels are compiled, which the next command finds done."""
-        from separatrix.ground.compiling import COMPILING
-
         if not self.compiled:
             self.compiled = True
-            why = f": {COMPILING.reason}" if COMPILING.reason else ""
-            complain(f"{self.title}: compiling once on this machine, about a minute in all{why}.")
+            complain(f"{self.title}: the solver is {compiled_once()}")
 
     def line(self) -> str:
         """Return how far the work is after which time."""

@@ -104,16 +104,17 @@ def page(answer: Part) -> Page:
 
 def verdicts(name: str, rows: Sequence[Part], level: Level = Level.ALWAYS) -> list[Block]:
     """Return rank, friction, what is compared with it, and verdict of each candidate."""
-    compared, order = ("restitution_threshold", "margin"), "margin"
+    compared = list[Column]()  # none if an interrupt left nothing of it
     if has_safety(rows):
-        compared, order = ("own_critical_friction", "safety_factor"), "safety factor"
-    ranks = ranks_of(rows)
+        compared = [q.column("own_critical_friction", is_short=True), q.column("safety_factor")]
+    elif any("margin" in row for row in rows):
+        compared = [q.column("restitution_threshold"), q.column("margin")]
+    ranks, order = ranks_of(rows), "safety factor" if has_safety(rows) else "margin"
     columns = (
         text_column("rank", lambda row: ranks[row.name], f"by {order}, = a tie within the scatter"),
         NAME,
         q.column("friction", mark=lambda row: MARK * bool(row.extrapolation)),
-        q.column(compared[0], is_short=has_safety(rows)),
-        q.column(compared[1]),
+        *compared,
         q.column("probability_stable"),
         text_column("verdict", verdict),
     )

@@ -8,6 +8,7 @@ import math
 import signal
 import threading
 import zlib
+from collections import defaultdict
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor, Future, ThreadPoolExecutor, wait
 from dataclasses import fields
@@ -50,8 +51,8 @@ NAMES = tuple(field.name for field in fields(Ensemble))
 AT_WORK: list[Stop] = []
 """Flags of the jobs of this process that are at work."""
 
-UNDER_WAY = 0.25
-"""What a run of a place under way counts, beside one of a finished place: short runs end first."""
+UNDER_WAY = 0.7
+"""What a run of a place under way counts, beside one of a finished place: its first ones are short."""
 
 LEAST_LEFT = 0.2
 """Share of its load that a place under way takes at least before it ends."""
@@ -67,8 +68,9 @@ class Load(NamedTuple):
 class Work:
     """How far a job is, by the time that its places took and the runs that they made for it.
 
-    What is left goes on at the pace of what was made; a place under way takes at least a fifth of its load
-    more. Places whose runs were kept by an earlier job say nothing of the others.
+    What is left goes on at the pace of what was made of its kind; of a kind of which little was made, at
+    that of all. A place under way takes at least a fifth of its load more. Places whose runs were kept by an
+    earlier job say nothing of the others.
     """
 
     def __init__(self) -> None:
@@ -101,21 +103,21 @@ class Work:
         """Work done and all that is expected [s], of these threads; a place keeps one busy, no more."""
         with self._lock:
             done = sum(spent for spent, _ in self._spent.values())
-            made, spent_there = 0.0, 0.0
+            made, took = defaultdict[type, float](float), defaultdict[type, Second](float)
             for place, load in self.loads.items():
                 spent, runs = self._spent.get(place, (0.0, 0.0))
                 if place not in self._kept:
                     whole = load.runs if place in self._finished else UNDER_WAY * min(runs, load.runs)
-                    made, spent_there = made + load.dear * whole, spent_there + spent
-            if spent_there == 0.0:
+                    made[type(place)] += load.dear * whole
+                    took[type(place)] += spent
+            if not any(took.values()):
                 return done, math.inf
-            pace, left = spent_there / made, [0.0]
+            pace, left = sum(took.values()) / sum(made.values()), [0.0]
             for place, load in self.loads.items():
-                spent, runs = self._spent.get(place, (0.0, 0.0))
                 if place not in self._finished:
-                    own = spent / runs if runs and place not in self._kept else 0.0
-                    rest = max(load.runs - runs, LEAST_LEFT * load.runs)
-                    left.append(max(own, pace * load.dear) * rest)
+                    kind, (_, runs) = type(place), self._spent.get(place, (0.0, 0.0))
+                    of_kind = (took[kind] + pace * load.runs) / (made[kind] + load.runs)
+                    left.append(of_kind * load.dear * max(load.runs - runs, LEAST_LEFT * load.runs))
             return done, done + max(sum(left), threads * max(left))
 
 

@@ -319,7 +319,7 @@ def _load(question: _Question, piece: Piece) -> Load:
         return expected_load(question.settings, band=piece.restitution_factor is None)
     kicks = len(question.settings.kicks)
     if isinstance(piece, Limit):
-        return Load(kicks * expected_load(question.settings, band=False).runs)
+        return Load(kicks * expected_load(question.settings, band=False).runs, dear=6.0)
     return Load(kicks * question.settings.runs)
 
 
@@ -401,6 +401,8 @@ def _row(
         "land_clearance": pocket.land or None,
         "restitution_factor": eta,
     }
+    limit = _of_pocket(question, found, Limit, pocket)
+    values |= _safety(limit, friction, question.spreads.get(name, 0.0))
     judgement = found.get(Asked(pocket, friction.mean))
     if judgement is None:
         return NotFinished(**values, reason=NOT_FINISHED)
@@ -409,7 +411,6 @@ def _row(
     values["judgement"] = judgement
     values["over_inputs"] = found.get(Case(name)) if environment == question.environment else None
     threshold = _threshold(question, found, pocket, friction)
-    limit = _of_pocket(question, found, Limit, pocket)
     by_paper = Asked(pocket, friction.mean, True)
     papers = judgement if question.is_paper else found.get(by_paper)
     is_missing = papers is None and by_paper in question.beside
@@ -425,7 +426,6 @@ def _row(
         margin=threshold.value - eta,
         paper_verdict=None if papers is None else papers.verdict,
         paper_probability_stable=None if papers is None else papers.probability_stable,
-        **_safety(limit, friction, question.spreads.get(name, 0.0)),
     )
 
 

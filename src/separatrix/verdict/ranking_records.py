@@ -48,6 +48,17 @@ class MeasuredCandidate:
     pocket_clearance: Metre  # running, along the circumference
     land_clearance: Metre | None  # running, diametral; null without a land
     restitution_factor: Ratio  # of the chain with its pocket
+    own_critical_friction: Ratio | None = None
+    """At which half the runs whirl from the worst disturbance, with its own race damping; null in the paper's
+    model, and where no friction that was searched is enough."""
+    own_critical_friction_low: Ratio | None = None  # of its 95 % interval, from the number of runs
+    own_critical_friction_high: Ratio | None = None  # upper end of it
+    critical_kick: MetrePerSecond | None = None  # disturbance from which the critical friction is lowest
+    critical_ball: str | None = None  # that decided the critical friction
+    estimated_critical_friction: Ratio | None = None  # by the closed law, to check the order
+    safety_factor: Ratio | None = None  # critical friction over friction; null as the critical friction is
+    safety_factor_low: Ratio | None = None  # of its 95 % interval, with the scatter of friction and inputs
+    safety_factor_high: Ratio | None = None  # upper end of it
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -69,17 +80,6 @@ class Ranked(MeasuredCandidate):
     margin: Ratio  # threshold less the restitution factor
     paper_verdict: Verdict | None  # by the paper's model, in the bearing's own environment; else null
     paper_probability_stable: Ratio | None  # the same
-    own_critical_friction: Ratio | None = None
-    """At which half the runs whirl from the worst disturbance, with its own race damping; null in the paper's
-    model, and where no friction that was searched is enough."""
-    own_critical_friction_low: Ratio | None = None  # of its 95 % interval, from the number of runs
-    own_critical_friction_high: Ratio | None = None  # upper end of it
-    critical_kick: MetrePerSecond | None = None  # disturbance from which the critical friction is lowest
-    critical_ball: str | None = None  # that decided the critical friction
-    estimated_critical_friction: Ratio | None = None  # by the closed law, to check the order
-    safety_factor: Ratio | None = None  # critical friction over friction; null as the critical friction is
-    safety_factor_low: Ratio | None = None  # of its 95 % interval, with the scatter of friction and inputs
-    safety_factor_high: Ratio | None = None  # upper end of it
     rank: int = 0  # by safety factor, in the paper's model by margin; a tie within the scatter of the best
     judgement: Judgement  # verdict and evidence at the central values of the study
     over_inputs: Judgement | None = None

@@ -125,7 +125,7 @@ def uncertain_study(study: Study, bearings: int, *, runner: Runner | None = None
         lambda case: counted(drawn, case, runner),
         scattered(drawn.friction),
         into=lambda judged: _answer(drawn, judged, bearings),
-        load=lambda _: Load(len(drawn.kicks) * len(drawn.runs)),
+        load=lambda _: Load(len(drawn.kicks) * min(BLOCK, len(drawn.runs))),  # most are plain after one
     )
 
 

@@ -211,6 +211,7 @@ def routes(page: Page) -> APIRouter:
         path = page.folder.study(name)
         checked = check(path, page.folder.root)
         more |= {"checked": checked, "version": version_of(checked.text), "sections": [*form(checked)]}
+        more |= {"title": checked.inherited.get("title", ""), "is_part": page_of == "editor.html"}
         more |= {"as_typed": as_typed, "problem": problem, "has_draft": current(path) != path}
         return page.html(page_of, name=name, **more)
 
@@ -233,7 +234,6 @@ def routes(page: Page) -> APIRouter:
         return editor(
             name,
             page_of="study.html",
-            title=page.title(name),
             verbs=[verb_named(verb) for verb in VERBS],
             asked_of=asked_of,
             answers=page.answered(name),

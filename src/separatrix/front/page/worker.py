@@ -20,7 +20,7 @@ from pathlib import Path
 from queue import SimpleQueue
 from typing import TYPE_CHECKING, Any
 
-from separatrix.front.console import LOOK, LeftBehind, Pace, breakable
+from separatrix.front.console import LOOK, LeftBehind, Pace, breakable, compiled_once
 from separatrix.front.page.folder import LOG, REPORT, Folder
 from separatrix.ground.errors import InputError, SeparatrixError, json_text
 from separatrix.ground.files import reading_only_in, staged
@@ -214,6 +214,9 @@ def _ended(job: Job, folder: Folder, pipe: Connection) -> tuple[str, str]:
         with contextlib.suppress(OSError):
             pipe.send(changes)
 
+    from separatrix.ground.compiling import COMPILING
+
+    COMPILING.heard[:] = [lambda: send(message=f"The solver is {compiled_once()}")]
     try:
         ended: tuple[str, str] = breakable(partial(answered, job, folder, send), wait)
         return ended
@@ -242,22 +245,25 @@ def answered(job: Job, folder: Folder, send: Send) -> tuple[str, str]:
         verb, model = verb_named("check" if job.verb == REPORT else job.verb), question.pop("model", None)
         study = asked_study(verb, source, str(model) if model else None)
 
+        def begin(what: str) -> None:
+            send(message=what, left=None)
+
         def compute(verb: Verb, options: Any = None) -> Computed:
             return computed(verb, study, options, folder=place, progress=reporting(send))
 
         def part(verb: Verb) -> Document:
-            send(message=f"Computing {verb.name} for the report.")
+            begin(f"Computing {verb.name} for the report.")
             return document(verb, compute(verb))
 
         if job.verb == REPORT:
             report = report_of_study(study, part, place, pictures=True)
             if report is None:
                 return INTERRUPTED
-            send(message="Writing the report.")
+            begin("Writing the report.")
             report.write(place, with_pdf=find_spec("typst") is not None)
             return "finished", ""
         found = compute(verb, verb.options(**question))
-        send(message="Drawing the figures and writing the files.")
+        begin("Drawing the figures and writing the files.")
         save_answer(place, verb, document(verb, found))
         taken = f"{found.runs_taken} runs were taken from an earlier job." if found.runs_taken else ""
         return ("finished", taken) if found.is_complete else INTERRUPTED
