@@ -59,7 +59,7 @@ def work_of(**loads):
 
 
 def test_what_is_left_goes_on_at_the_pace_of_what_was_made():
-    """Nothing is known before the first run; a run of a place under way counts 0.7 of one of a finished place."""
+    """Nothing is known before the first run; a run counts 0.7 while its place is under way."""
     work = work_of(a=Load(100), b=Load(100), c=Load(100, dear=2.0))
     assert work.so_far(1) == (0.0, math.inf)
     work.spend("a", 3.0, 70)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from math import floor, isfinite, log10
+from math import floor, inf, isfinite, log10
 from typing import NamedTuple
 
 from separatrix.ground.units import format_number, readable
@@ -20,7 +20,8 @@ class Quantity:
 
     `ends` are the names of the ends of its interval, by default its own with ``_low`` and ``_high``. `form`
     is for numbers of which a reader expects fixed decimals, such as ``"+.2f"``; others have `digits`
-    significant ones. `unit` is one that readers expect where the size of a number does not choose it.
+    significant ones. `unit` is one that readers expect where the size of a number does not choose it. A
+    number at the `top` of what is possible or searched is written as beyond its lower end.
     """
 
     label: str
@@ -31,6 +32,7 @@ class Quantity:
     digits: int = 3
     unit: str = ""
     ends: tuple[str, str] | None = None
+    top: float = inf
 
 
 class Estimate(NamedTuple):

@@ -175,6 +175,7 @@ QUANTITIES: dict[str, Quantity] = {
         label="restitution threshold",
         head="threshold",
         form=".2f",
+        top=1.0,
         meaning="largest restitution factor eta at which the cage is stable from the reference disturbance",
     ),
     "effective_restitution_factor": Q(label="effective restitution factor", form=".2f"),
@@ -299,6 +300,8 @@ def estimate(part: Part, name: str) -> Number:
     low, high = ends_of(name)
     if part.get(low) is None:
         return value  # type: ignore[no-any-return]
+    if value is not None and value >= quantity(name).top:
+        return Estimate(None, part.get(low))
     return Estimate(value, part.get(low), part.get(high))
 
 

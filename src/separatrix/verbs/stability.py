@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from separatrix.ground.document import Part
 from separatrix.present.blocks import Heading, Level, Note, Page, Picture, facts
 from separatrix.present.figure import Figure, Mark, Trace
-from separatrix.present.quantity_text import fill
+from separatrix.present.quantity_text import begun, fill
 from separatrix.verbs.parts.answer_page import figure, page_of
 from separatrix.verbs.parts.chain_blocks import basis_facts
 from separatrix.verbs.parts.verdict_blocks import curve_blocks, curve_panel, pocket_friction
@@ -62,12 +62,13 @@ def own_words(answer: Part) -> Iterator[str]:
         yield fill(here, at + "half of the runs whirl at a pocket friction of {critical_friction}.")
     else:
         yield f"{at}no critical friction was found: {here.reason}."
-    low, high = "at no friction", fill(answer, "at no friction up to {searched_friction}")
-    if "critical_friction_low" in here:
-        low = fill(here, "below {critical_friction_low}")
-    if "critical_friction_high" in here:
-        high = fill(here, "above {critical_friction_high}")
-    yield f"From every disturbance runs settle or roll {low}, and whirl {high}."
+    words = {"low": "settle or roll below", "high": "whirl above"}
+    names = {f"critical_friction_{end}": one for end, one in words.items()}
+    ends = [fill(here, f"{one} {{{name}}}") for name, one in names.items() if name in here]
+    if ends:
+        yield f"From every disturbance runs {', and '.join(ends)}."
+    if "critical_friction" in here and "reason" in here:
+        yield f"{begun(here.reason)}."
 
 
 def friction_words(answer: Part) -> Iterator[str]:

@@ -90,7 +90,7 @@ _VALUES = (
 
 _REASONS = {
     Side.ABOVE: "{0:.0%} of the runs from {1:g} m/s whirl even at zero pocket friction",
-    Side.BELOW: f"under {{0:.0%}} of the runs from {{1:g}} m/s whirl below friction {SEARCHED_FRICTION:g}",
+    Side.BELOW: f"under {{0:.0%}} of the runs from {{1:g}} m/s whirl at friction {SEARCHED_FRICTION:g}",
 }
 
 
