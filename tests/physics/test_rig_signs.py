@@ -10,7 +10,7 @@ import separatrix
 from separatrix.cage import moving_cage, simulate
 from separatrix.cage.outcome import RunOutcome
 from separatrix.chain.solution import solve
-from separatrix.verdict.rig_signs import SLOWER, loudest, rig_signs, slower
+from separatrix.verdict.rig_signs import SLOWER, heard, loudest, rig_signs, slower
 
 WHEEL = solve(separatrix.read_study("momentum-wheel"))
 
@@ -63,25 +63,36 @@ def test_a_whirl_gives_its_power_to_the_torque(whirling):
     assert found.torque_exponent > found.race_exponent + 0.5
 
 
+def circle(history, whirl, end):
+    """A circle of this frequency against the balls, in the place of a run."""
+    time, turn = np.linspace(0.0, end, 2000), 2j * math.pi * whirl
+    place = 1e-4 * np.exp(turn * time)
+    position, velocity = (np.stack((one.real, one.imag), axis=1) for one in (place, turn * place))
+    return replace(history, time=time, position=position, velocity=velocity, judged_from=0.0, followed=end)
+
+
 @pytest.mark.parametrize("whirl", [-1500.0, 900.0])
 def test_loudest_third_octave_of_a_circle(whirling, whirl):
     """A circle of known frequency against the balls, 5 ms: heard at that and their turning."""
     _, (_, cage, history) = whirling
-    time = np.linspace(0.0, 5e-3, 2000)
-    turn = 2j * math.pi * whirl
-    place = 1e-4 * np.exp(turn * time)
-    circle = replace(
-        history,
-        time=time,
-        position=np.stack((place.real, place.imag), axis=1),
-        velocity=np.stack(((turn * place).real, (turn * place).imag), axis=1),
-        judged_from=0.0,
-        followed=time[-1],
-    )
     seen = abs(whirl + cage.cage_speed / (2.0 * math.pi))
-    line, share = loudest(cage, circle)
+    line, share = loudest(cage, circle(history, whirl, 5e-3))
     assert abs(math.log2(line / seen)) < 1.0 / 6.0 + 0.15  # half a third octave, and half a line of 5 ms
     assert share > 0.5
+
+
+def test_a_settled_cage_is_heard_where_it_turns_off_the_axis(whirling):
+    """At rest among the balls it is an unbalance; not heard are one that goes on otherwise, and one on the axis."""
+    _, (_, cage, history) = whirling
+    own = cage.cage_speed / (2.0 * math.pi)
+    settled = replace(history, outcome=RunOutcome.SETTLES, cause=None)
+    line, share = heard(cage, circle(settled, 0.0, 40.0 / own))
+    assert abs(math.log2(line / own)) <= 1.0 / 6.0
+    assert (
+        share > 0.9
+    )  # forty turns, of which a window of 20 leaves its main lobe: 4 lines of some 5 in the band
+    assert heard(cage, circle(settled, -0.5 * own, 40.0 / own)) == (None, None)
+    assert heard(cage, replace(settled, position=0.0 * settled.position)) == (None, None)
 
 
 def test_a_whirl_is_heard(whirling):

@@ -167,7 +167,9 @@ def has_land(cage: Part) -> bool:
 
 def motion_facts(answer: Part) -> Facts:
     """Return how the cage moves in the judged part, its largest forces, and what feeds and brakes it."""
-    whirl, slip = "none: the motion does not last", "the ball set is at rest"
+    whirl, slip = "none that lasts", "the ball set is at rest"
+    if answer.outcome == "SETTLES":
+        whirl = "none: the pockets sustain no motion"
     if "whirl_frequency" in answer:
         sense = DIRECTIONS[answer.whirl_direction] or "without direction"
         whirl = f"{{whirl_frequency}} {sense}, seen from the balls; the centre moves at {{whirl_speed}}"
@@ -200,9 +202,11 @@ def sign_blocks(answer: Part) -> list[Block]:
     """Return what a test rig sees of this run; nothing during a start-up."""
     if "bearing_torque" not in answer:
         return []
-    line = "none: the motion does not last"
+    line = "nothing that lasts"
     if "housing_frequency" in answer:
         line = fill(answer, "the third octave about {housing_frequency}, with {housing_share} of the power")
+        if answer.signs_outcome == "SETTLES":
+            line += ": the turn of the cage, whose centre stays off the axis"
     torque = (
         "{bearing_torque}, of it {cage_torque} by pockets and lands; {pocket_share} of the power at pockets"
     )

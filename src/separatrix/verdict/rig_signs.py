@@ -33,7 +33,8 @@ class RigSigns:
     pocket_heat: Watt  # of friction in all pockets at the end of the run
     pocket_share: Ratio  # of it in all power that the shaft gives
     housing_frequency: Hertz | None
-    """Middle of the third octave with most of a whirl's motion, in the housing; null without a whirl."""
+    """Middle of the third octave with most of the centre's motion, in the housing: of a whirl, or of a cage
+    that has settled off the axis and turns; null of another one."""
     housing_share: Ratio | None  # of its power that lies there: a line where it is most
     signs_outcome: RunOutcome  # of the run that these signs are of
     signs_with_free_balls: bool  # whether its balls are free, since its forces exceed what the races hold
@@ -64,7 +65,7 @@ def rig_signs(this: Followed, other: Followed) -> RigSigns:
     """Signs of a run, one that lasts followed until it has grown; `other` is that of the `slower` chain."""
     (torque, of_cage, pockets, heat), (less, *_) = shaft_torque(*this), shaft_torque(*other)
     _, cage, history = this
-    line, share = loudest(cage, history) if lasts(history) else (None, None)
+    line, share = heard(cage, history)
     return RigSigns(
         bearing_torque=torque,
         cage_torque=of_cage,
@@ -98,6 +99,20 @@ def loudest(cage: MovingCage, history: History) -> tuple[Hertz, Ratio]:
     powers = np.bincount(place_of, power)
     most = int(powers.argmax())
     return float(KILOHERTZ * 2.0 ** (each[most] / 3.0)), float(powers[most] / power.sum())
+
+
+def heard(cage: MovingCage, history: History) -> tuple[Hertz, Ratio] | tuple[None, None]:
+    """The loudest third octave of a motion that lasts; of another one only if the turning cage makes it.
+
+    That is the case where more than half of the power is at the speed of the cage: its centre has come to
+    rest among the balls, off the axis.
+    """
+    own = abs(cage.cage_speed) / (2.0 * math.pi)
+    if not history.position[-1].any():
+        return None, None
+    line, share = loudest(cage, history)
+    is_turn = share > 0.5 and own > 0.0 and abs(math.log2(line / own)) <= 1.0 / 6.0
+    return (line, share) if is_turn or lasts(history) else (None, None)
 
 
 def _exponent(torque: NewtonMetre, less: NewtonMetre) -> Ratio:
