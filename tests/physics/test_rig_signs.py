@@ -82,7 +82,7 @@ def test_loudest_third_octave_of_a_circle(whirling, whirl):
 
 
 def test_a_settled_cage_is_heard_where_it_turns_off_the_axis(whirling):
-    """At rest among the balls it is an unbalance; not heard are one that goes on otherwise, and one on the axis."""
+    """At rest among the balls it is an unbalance; not heard: a centre that moves on, one on the axis."""
     _, (_, cage, history) = whirling
     own = cage.cage_speed / (2.0 * math.pi)
     settled = replace(history, outcome=RunOutcome.SETTLES, cause=None)

@@ -15,6 +15,7 @@ from separatrix.present import quantity_text as q
 from separatrix.present.blocks import Column, Heading, Note, Page, Picture, Table, facts, grouped, text_column
 from separatrix.present.figure import CYCLE, GREY, MARKERS, Across, Axis, Figure, Mark, Panel
 from separatrix.verbs.parts.answer_page import figure, page_of
+from separatrix.verbs.parts.verdict_blocks import evidence_column
 from separatrix.verbs.verb import Option, Verb
 
 if TYPE_CHECKING:
@@ -26,9 +27,10 @@ ETA = "restitution_factor"
 WORST = {ETA: "highest", **dict.fromkeys(("safety_factor", "margin", "probability_stable"), "lowest")}
 TIMES = ("below_margin", "stable", "unstable", "undecided", "refused")
 SOLVED = ("time_share", ETA, "race_damping", "load_inner", "contact_angle_inner", "max_pressure_inner")
+EVIDENCE = ("largest_offset", "largest_contact_force")
 JUDGED = (
     *("time_share", ETA, "restitution_threshold", "margin", "own_critical_friction", "safety_factor"),
-    *("probability_stable", "largest_offset", "largest_contact_force"),
+    *("probability_stable", *EVIDENCE),
 )
 """Columns of a table of cases: of the chain alone, and with verdicts or margins."""
 
@@ -154,7 +156,9 @@ def case_table(answer: Part) -> Table:
 
     names = JUDGED if answer.margins or answer.verdicts else SOLVED
     columns = [text_column("case", lambda case: case.case), *map(of, answer.parameters)]
-    columns += [q.column(name) for name in names if has(answer, name)]
+    columns += [
+        evidence_column(name) if name in EVIDENCE else q.column(name) for name in names if has(answer, name)
+    ]
     if answer.verdicts or any(map(is_refused, answer.cases)):
         words = text_column("verdict", lambda case: "refused" if is_refused(case) else case.verdict or "-")
         columns.append(words)

@@ -191,6 +191,8 @@ class SweptCase:
     largest_offset: Metre | None = None
     drift_rate: PerSecond | None = None  # growth rate of the mean offset, median over the runs
     largest_contact_force: Newton | None = None
+    force_limit: Newton | None = None  # pocket force up to which the balls of the verdict have a meaning
+    force_exceeds_races: bool | None = None  # whether the largest contact force is beyond that
     largest_land_force: Newton | None = None
     runs: int | None = None  # of the verdict
     time_share: Ratio | None = None  # of a duty cycle; null without one
