@@ -60,7 +60,7 @@ def _of_verdict(row: Document, cage: Document) -> Iterator[str]:
         calm = count["settles"] + count["rolls"]
         if calm < 0.9 * row["runs"] or count["kept_by_land"] > 0.1 * row["runs"]:
             yield f"STABLE with {count}"
-    if row["cage_motion"] not in ("CENTRED", "ON THE LAND", "ROLLING"):
+    if row["cage_motion"] not in ("SETTLED", "ON THE LAND", "ROLLING"):
         yield f"STABLE and {row['cage_motion']}"
     if row["cage_motion"] == "ON THE LAND" and row["rubbing_force"] <= 0.0:
         yield "on the land without a force there"

@@ -27,7 +27,7 @@ DRIFTS, UNRESOLVED, ROLLS = RunOutcome.DRIFTS, RunOutcome.UNRESOLVED, RunOutcome
 
 
 STABLE, UNSTABLE, UNDECIDED = Verdict.STABLE, Verdict.UNSTABLE, Verdict.UNDECIDED
-CENTRED, WHIRLING, ON_THE_LAND = CageMotion.CENTRED, CageMotion.WHIRLING, CageMotion.ON_THE_LAND
+SETTLED, WHIRLING, ON_THE_LAND = CageMotion.SETTLED, CageMotion.WHIRLING, CageMotion.ON_THE_LAND
 ROLLING = CageMotion.ROLLING
 WIDE = replace(GUIDED, land_clearance=8e-3)
 
@@ -52,41 +52,41 @@ def case(found, rows, cage=CAGE, **evidence):
 
 RUBS = {"rubbing_force": 4.0, "rubbing_speed": 3.0}
 JUDGED = [
-    case("STABLE CENTRED", many(16)),
+    case("STABLE SETTLED", many(16)),
     case("UNSTABLE WHIRLING", many(0, 16)),
     # 42 of 64 lie above one half beyond their scatter, 38 do not; settling needs nine in ten
     case("UNSTABLE WHIRLING", many(22, 42)),
     case("UNDECIDED WHIRLING", many(26, 38)),
-    case("UNDECIDED CENTRED", many(57, 7)),
-    case("STABLE CENTRED", many(58, 6)),
+    case("UNDECIDED SETTLED", many(57, 7)),
+    case("STABLE SETTLED", many(58, 6)),
     case("UNDECIDED WHIRLING", many(8, 8)),
     # rolling in the pockets counts as settling; the class is what most runs do
     case("STABLE ROLLING", many(4, 0, 0, 0, 12)),
-    case("STABLE CENTRED", many(9, 0, 0, 0, 7)),
+    case("STABLE SETTLED", many(9, 0, 0, 0, 7)),
     case("UNDECIDED ROLLING", many(2, 6, 0, 0, 8)),
     # three runs are too few
-    case("UNDECIDED CENTRED", many(3)),
+    case("UNDECIDED SETTLED", many(3)),
     case("UNDECIDED WHIRLING", many(0, 3)),
-    case("STABLE CENTRED", many(4)),
+    case("STABLE SETTLED", many(4)),
     case("UNSTABLE WHIRLING", many(0, 4)),
     # one run beyond the range of numbers keeps a cage from STABLE: nothing is known of how far it went
-    case("UNDECIDED CENTRED", [*many(16)[:2], many(15, 0, 0, 1)[0]], cause=int(Cause.NOT_FINITE)),
+    case("UNDECIDED SETTLED", [*many(16)[:2], many(15, 0, 0, 1)[0]], cause=int(Cause.NOT_FINITE)),
     # a few other unresolved runs do not hide the others
-    case("STABLE CENTRED", many(15, 0, 0, 1)),
-    case("UNDECIDED CENTRED", many(13, 0, 0, 3)),
-    case("UNDECIDED CENTRED", many(16, 0, 4), largest_offset=[[1e-4] * 16 + [7e-4] * 4] * 3),
+    case("STABLE SETTLED", many(15, 0, 0, 1)),
+    case("UNDECIDED SETTLED", many(13, 0, 0, 3)),
+    case("UNDECIDED SETTLED", many(16, 0, 4), largest_offset=[[1e-4] * 16 + [7e-4] * 4] * 3),
     case("UNDECIDED DRIFTING", many(7, 0, 9)),
     case("STABLE ON_THE_LAND", many(8), GUIDED, **RUBS),
     # of the calm runs from the worst kick most must rub
     case("STABLE ON_THE_LAND", many(16), GUIDED, rubbing_force=[5.0] * 10 + [0.0] * 6),
-    case("UNDECIDED CENTRED", many(9, 7), GUIDED, rubbing_force=[5.0] * 4 + [0.0] * 5 + [5.0] * 7),
+    case("UNDECIDED SETTLED", many(9, 7), GUIDED, rubbing_force=[5.0] * 4 + [0.0] * 5 + [5.0] * 7),
     case("UNDECIDED ON_THE_LAND", many(9, 7), GUIDED, rubbing_force=[5.0] * 9 + [0.0] * 7),
     # a land of 8 mm holds the cage, but 4 mm off in pockets of 0.6 mm nobody calls it stable
-    case("UNDECIDED CENTRED", many(16), WIDE, mean_offset=4e-3),
-    case("UNDECIDED CENTRED", many(16), WIDE, mean_offset=[[0.0] * 16, [0.0] * 13 + [4e-3] * 3, [0.0] * 16]),
+    case("UNDECIDED SETTLED", many(16), WIDE, mean_offset=4e-3),
+    case("UNDECIDED SETTLED", many(16), WIDE, mean_offset=[[0.0] * 16, [0.0] * 13 + [4e-3] * 3, [0.0] * 16]),
     # twice the half play of 0.3 mm, or twice the land's gap if that is larger, in one run of any kick
-    case("UNDECIDED CENTRED", many(16), GUIDED, largest_offset=once(3e-4, 6.1e-4)),
-    case("STABLE CENTRED", many(16), GUIDED, largest_offset=once(3e-4, 5.9e-4)),
+    case("UNDECIDED SETTLED", many(16), GUIDED, largest_offset=once(3e-4, 6.1e-4)),
+    case("STABLE SETTLED", many(16), GUIDED, largest_offset=once(3e-4, 5.9e-4)),
 ]
 
 
@@ -435,7 +435,7 @@ def test_the_evidence_is_that_of_the_motion_that_is_named(runs):
         assert found.end_energy == ENDS[found.cage_motion]
     least = max(1, worst.calm, worst.drifts + 1, worst.unresolved)
     assert (found.cage_motion is CageMotion.WHIRLING) == (worst.whirls >= least)
-    if found.cage_motion in (CageMotion.CENTRED, CageMotion.ON_THE_LAND, CageMotion.ROLLING):
+    if found.cage_motion in (CageMotion.SETTLED, CageMotion.ON_THE_LAND, CageMotion.ROLLING):
         assert worst.calm > worst.whirls
         assert (found.cage_motion is CageMotion.ROLLING) == (worst.rolls > worst.settles)
 

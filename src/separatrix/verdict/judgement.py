@@ -267,7 +267,7 @@ ENDS = {
     CageMotion.WHIRLING: RunOutcome.WHIRLS,
     CageMotion.DRIFTING: RunOutcome.DRIFTS,
     CageMotion.ROLLING: RunOutcome.ROLLS,
-    CageMotion.CENTRED: RunOutcome.SETTLES,
+    CageMotion.SETTLED: RunOutcome.SETTLES,
     CageMotion.ON_THE_LAND: RunOutcome.SETTLES,
 }
 """Outcome of the runs that end in a motion."""

@@ -75,9 +75,9 @@ def outcome_sentence(history: History, *, limit: Newton | None, rubbing_power: W
 
 
 class CageMotion(Spelled):
-    """What the cage does at the end of the runs; ROLLING: in its pockets."""
+    """What the cage does at the end of the runs; SETTLED: within its clearances; ROLLING: in its pockets."""
 
-    CENTRED = "CENTRED"
+    SETTLED = "SETTLED"
     ROLLING = "ROLLING"
     ON_THE_LAND = "ON THE LAND"
     WHIRLING = "WHIRLING"
@@ -99,7 +99,7 @@ def cage_motion(ensemble: Ensemble, kick: int) -> CageMotion | None:
     if rolls > settles:
         return CageMotion.ROLLING
     rubs = ensemble.rubbing_force[kick][outcome == RunOutcome.SETTLES] > 0.0
-    return CageMotion.ON_THE_LAND if 2 * np.count_nonzero(rubs) > settles else CageMotion.CENTRED
+    return CageMotion.ON_THE_LAND if 2 * np.count_nonzero(rubs) > settles else CageMotion.SETTLED
 
 
 def ball_words(cage: MovingCage) -> str:
