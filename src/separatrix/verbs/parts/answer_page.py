@@ -41,7 +41,8 @@ def page_of(
     texts = [*notes, *answer.warnings]
     caveats = [Note(text, "caveat") for text in texts[:MOST_NOTES]]
     caveats += [Note(text, "caveat", Level.LONG) for text in texts[MOST_NOTES:]]
-    hidden = [*more, *([f"{len(texts) - MOST_NOTES} more notes"] if texts[MOST_NOTES:] else [])]
+    rest = len(texts) - MOST_NOTES
+    hidden = [*more, *([f"{rest} more note{'s' * (rest > 1)}"] if rest > 0 else [])]
     if hidden:
         caveats.append(Note(f"`--full` has {', '.join(hidden)}.", level=Level.BRIEF))
     return Page(
