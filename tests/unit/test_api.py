@@ -56,7 +56,7 @@ def test_a_report_of_a_study_is_a_document(small):
     bare = separatrix.read_study(small)
     bare = replace(bare, ranking=None)
     found = separatrix.report(bare, jobs=1, progress=lambda done, total: told.append((done, total)))
-    assert [*found.documents] == ["stability", "bearing", "traction", "restitution"]
+    assert [*found.documents] == ["stability", "bearing", "traction", "restitution", "simulate"]
     assert told
     assert found.documents["bearing"]["balls"] == separatrix.bearing(bare).document()["balls"]
     assert found.summary().splitlines() == list(found.page.lead)

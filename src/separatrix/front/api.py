@@ -383,7 +383,7 @@ def material(name: str, *, kind: str | None = None, libraries: Sequence[str | Pa
 def report(study: Asked, **how: Unpack[Runs]) -> Report:
     """Everything on a study as one document; parameters are those of `stability`.
 
-    Bearing, traction, restitution and rank (without [ranking]: stability) are computed for it.
+    Bearing, traction, restitution, simulate and rank (without [ranking]: stability) are computed for it.
     """
     asked = study if isinstance(study, Study) else read_study(study)
     found = report_of_study(asked, lambda verb: _answer(verb.name, asked, **how).document())

@@ -291,7 +291,7 @@ def _page(given: Given) -> int:
 
 
 REPORT_EPILOG = (
-    "Of a folder: from the answers in it. Of a study: bearing, traction, "
+    "Of a folder: from the answers in it. Of a study: bearing, traction, simulate, "
     "restitution and rank (without [ranking]: stability) are computed into its folder first; answers to the "
     "same inputs that are there already are taken. The HTML needs no other file and no network."
 )

@@ -62,7 +62,7 @@ def html(
     behind = (
         f'<script type="application/json" id="separatrix-answers">{answers}</script>' if documents else ""
     )
-    kept = "The answers behind this page are in this file, as JSON." if documents else ""
+    kept = f"Answers in this file, as JSON: {', '.join(documents)}." if documents else ""
     return harmless(f"""<!DOCTYPE html>
 <html lang="en">
 <head>

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from separatrix import __version__
 from separatrix.ground.document import Document, part_of
-from separatrix.ground.errors import InputError
+from separatrix.ground.errors import InputError, json_text
 from separatrix.ground.files import staged
 from separatrix.present.blocks import Note, Page, joined
 from separatrix.verbs import VERBS, verb_named
@@ -30,9 +30,12 @@ if TYPE_CHECKING:
 
 ORDER = (
     *("rank", "stability", "bearing", "traction", "restitution", "mobility", "map", "sweep"),
-    *("sensitivity", "simulate"),
+    *("sensitivity", "life", "simulate"),
 )
 """Verbs in the order of a report: the answer first, then the chain behind it, then what varies it."""
+
+LARGEST = 4_000_000
+"""Characters of an answer that goes into the HTML file as JSON; that of a run in space has more."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,7 +53,8 @@ class Report:
         """One HTML file, as text, that needs no other file and no network."""
         from separatrix.present.html import html
 
-        return html(self.page, self.documents)
+        light = {verb: one for verb, one in self.documents.items() if len(json_text(one)) < LARGEST}
+        return html(self.page, light)
 
     def _repr_html_(self) -> str:
         return self.html()
@@ -140,7 +144,8 @@ def report_of_study(
         one = read_answer(path) if path.exists() else {}
         if one.get("complete", True) is True and asked.items() <= one.items():
             found[path.stem] = one
-    of_cage = ("restitution", "stability" if study.ranking is None else "rank") if study.cage else ()
+    last = "stability" if study.ranking is None else "rank"
+    of_cage = ("restitution", "simulate", last) if study.cage else ()
     for verb in map(verb_named, ("bearing", "traction", *of_cage)):
         if verb.name in found:
             continue
