@@ -145,7 +145,7 @@ def test_work_and_energy_balance_in_the_samples(data):
 
 def test_a_whirl_is_followed_for_fifty_turns_and_its_force_means_nothing_beyond_the_races(folder):
     """Its frequency and speed in the document and in the text; no digits of a force that no ball can take."""
-    (folder / "whirl.toml").write_text(SMALL.replace("= 0.1", "= 0.6"))
+    (folder / "whirl.toml").write_text(SMALL.replace("= 0.1", '= 0.6\nball = "traction"', 1))
     answer = separatrix.simulate(folder / "whirl.toml", kick=2.0)
     assert answer.notes
     found, text = answer.document(), words(answer.summary())
@@ -156,6 +156,16 @@ def test_a_whirl_is_followed_for_fifty_turns_and_its_force_means_nothing_beyond_
     assert found["force_exceeds_races"] is (found["largest_contact_force"] > found["force_limit"])
     assert found["force_limit"] == pytest.approx(95.7 / 0.6, rel=0.01)
     assert re.search(r"Pocket force, largest above what the races hold, (159.5|160) N", text)
+
+
+def test_a_whirl_whose_forces_pass_the_races_is_followed_among_free_balls(folder):
+    """One state has no meaning there: outcome, forces and signs are those of the ball that decides."""
+    (folder / "decided.toml").write_text(SMALL.replace("= 0.1", "= 0.6"))
+    answer = separatrix.simulate(folder / "decided.toml", kick=2.0)
+    assert answer.cage.free_ball is not None
+    assert answer.history.outcome is answer.signs.signs_outcome
+    assert not answer.force_exceeds_races
+    assert "Ball free: with one state the motion lasts with forces above" in words(answer.summary())
 
 
 def test_a_ball_that_leaves_its_pocket_is_named_with_its_time(folder):

@@ -19,7 +19,8 @@ from separatrix.verbs.compare import compared as compared_answers
 from separatrix.verbs.compare import difference_interval, differing, results
 from separatrix.verbs.map import map_figure, nearest_words, unchanged
 from separatrix.verbs.parts.bearing_drawing import CAGE, bearing_picture, section_of
-from separatrix.verbs.parts.verdict_blocks import linear_law, pocket_friction
+from separatrix.verbs.parts.verdict_blocks import deciding, linear_law, pocket_friction, verdict_sentences
+from separatrix.verbs.rank import by_paper
 from separatrix.verbs.sweep import SHOWN, case_table, envelope_figure, worst_words
 from separatrix.verdict.judgement import wilson_interval
 
@@ -191,6 +192,62 @@ def mapped(**more):
     y = {"parameter": "film.race_friction", "unit": "-", "values": [0.1, 0.3], "here": 0.25}
     found = {"x": x, "y": y, "points": points, "changes": [change], "kick": 0.5, "title": "A map"}
     return part_of({**found, "study": {"film": {"is_bare": True}}, "units": {"kick": "m/s"}, **more})
+
+
+CRITICAL = "own_critical_friction"
+
+
+def candidate(verdict="STABLE", critical=(0.248, 0.231, 0.269), friction=0.28):
+    """A row of a ranking, of a cage whose land is tighter than its pockets."""
+    ends = dict(zip((CRITICAL, f"{CRITICAL}_low", f"{CRITICAL}_high"), critical, strict=True))
+    factor = {"safety_factor": None, "safety_factor_low": ends[f"{CRITICAL}_low"] / friction}
+    sizes = {"land_clearance": 2e-4, "pocket_clearance": 2.5e-4}
+    rest = {"name": "Phenolic", "rank": 1, "friction": friction, "verdict": verdict, "extrapolation": []}
+    return Part({**rest, **sizes, **factor, **ends, "cage_motion": "CENTRED"}, dict.fromkeys(sizes, "m"))
+
+
+@pytest.mark.parametrize(
+    ("row", "wide", "words"),
+    [
+        (
+            candidate(critical=(0.79, 0.7, 0.9)),
+            (0.14, 0.12, 0.2),
+            "keeps it stable. {}0.140 (0.120 to 0.200), less than the friction of Phenolic.",
+        ),
+        (
+            candidate("UNSTABLE"),
+            (0.143, 0.121, 0.204),
+            "is not enough for Phenolic. {}0.143 (0.121 to 0.204).",
+        ),
+        (candidate(), (0.56, 0.53, 0.62), "does not decide. {}0.560 (0.530 to 0.620)."),
+        (candidate(), (0.22, 0.2, 0.24), "does not decide. {}0.220 (0.200 to 0.240)."),
+        (candidate(), (None, 1.0, None), "does not decide. {}> 1.000."),
+    ],
+)
+def test_the_headline_says_whether_a_tight_land_decides(row, wide, words):
+    """It does where a wide land would lower the critical friction, beyond the scatter of the runs."""
+    ends = dict(zip((CRITICAL, f"{CRITICAL}_low", f"{CRITICAL}_high"), wide, strict=True))
+    effect = {"name": "wide_land", "change": "a land of 0.4 mm", **ends}
+    (said,) = deciding(Part({"effects": [effect], "candidate": "Phenolic"}, {}), [row])
+    start = "The land stops the cage before its pockets do (land clearance 200 µm, pocket clearance 250 µm)"
+    assert said.startswith(start)
+    assert said.endswith(words.format("With a land of 0.4 mm the critical friction of Phenolic would be "))
+
+
+def test_a_critical_friction_that_was_not_found_is_no_friction_of_a_whirl():
+    """The highest that was searched is named as that."""
+    said = verdict_sentences([candidate(critical=(None, 1.0, None))], "air")
+    assert "Safety factor > 3.57: at no friction up to 1.000 half the runs whirl, the pockets" in said
+
+
+@pytest.mark.parametrize("motion", ["plane", "space"])
+def test_the_paper_differs_by_the_motion_too(motion):
+    """In space it is the tilt that may decide, and not the damping alone; the plane has none."""
+    row = Part(candidate().values | {"paper_verdict": "UNSTABLE", "restitution_threshold": 0.9}, {})
+    chain = {"race_damping": 105.7, "race_damping_free_spin": 94.4}
+    told = by_paper(Part({"chain": chain, "cage": {"motion": motion}}, {}), [row], ["Phenolic"])[0].text
+    assert "a ball that may spin resists a slow push with only 94.4" in told
+    assert ("the cage also tilts" in told) is (motion == "space")
 
 
 def test_a_map_says_what_is_next_to_the_study_and_where_it_changes():

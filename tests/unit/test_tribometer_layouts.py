@@ -122,13 +122,19 @@ def test_times_as_text_become_seconds(first, second, gap, form):
         ("Timestamp,DAQ.COF,Rotary.Position", "{0}.0,0.1{0:02d},0.{0:02d}"),
         ("# time(s) friction(mu) load(N)", "{0} 0.1{0:02d} 5.0"),
         ("Time [s];\u00c2\u00b5", "{0};0,1{0:02d}"),
+        ("Zeit [s];Reibwert \u00b5;Last [N]", "{0};0,1{0:02d};5,0;"),
+        ("Time;COF;Load\ns;-;N", "{0};0.1{0:02d};5.0;;"),
     ],
 )
 def test_columns_of_other_programs_are_understood(tmp_path, names, rows):
-    """Times as text with and without dates, units wherever they stand, a Greek letter in a wrong code."""
+    """Times as text, units wherever they stand, a Greek letter in a wrong code, rows that end in separators.
+
+    A symbol behind the name is not shown as the unit.
+    """
     (log,) = read(tmp_path, "\n".join([names, *(rows.format(i) for i in range(60))]) + "\n")
     assert log.time.tolist() == [float(i) for i in range(60)]
     assert log.friction.tolist() == [float(f"0.1{i:02d}") for i in range(60)]
+    assert next(one.unit for one in log.columns if one.meaning == "friction") in ("", "-")
 
 
 FORCE_ONLY = "Laps\tFrictionForce\n" + "".join(f"{i}\t{1.2 + 0.01 * (i % 3)}\n" for i in range(60))

@@ -104,6 +104,8 @@ REASONS = [
     ("of 16 runs 2 settle, 8 roll, 6 whirl.", many(2, 6, 0, 0, 8), {}),
     ("46 settle, 18 whirl; more runs would not change that, less friction would.", many(46, 18), {}),
     ("the cage then rubs on its land with 4 N at 3 m/s (1.2 W).", many(8), RUBS),
+    ("All of the runs settle from every disturbance.", many(16), {}),
+    ("All of the runs settle from the worst disturbance, 0.1 m/s.", many(16)[:1], {}),
 ]
 
 

@@ -65,6 +65,7 @@ WRONG = {
     "time without unit": (csv(columns={"time": TIME, "COF": FRICTION}), 'has an open question: column "time": the file states no unit'),
     "two units of a column": (csv(columns={"time [min]": TIME, "COF": FRICTION}, units=("s", "-")), 'has an open question: column "time [min]": the file writes "s, min"'),
     "every friction missing": (csv(columns={"time [s]": TIME, "COF": FRICTION * np.nan}, missing="x"), "needs at least two rows with a friction and its abscissa; got 0 of 20 rows"),
+    "statistics below the rows": (csv(separator=";") + b"Mean;0.12\n", 'must be a number; got "Mean". If that means a missing value, add below [format] in the column map: missing = ["Mean"]; if the table ends there, ends = ["Mean"].'),
     "dates for a time": (lines("time [s];COF;n", *(f"2026-02-{1 + i:02d};0.{100 + i};{i}" for i in range(9))), "has an open question: which column is the time"),
     "a time among times that is none": (lines("time;COF", "10:00:00;0.1", "10:00:01;0.1", "10:00;0.1", "late;0.1"), 'column "time": how are its times written? unit = "clock" for 10:00:01.5'),
     "times of two numbers": (lines("time;COF", *(f"10:{i:02d};0.{100 + i}" for i in range(9))), 'column "time": how are its times written?'),
@@ -79,6 +80,7 @@ def test_a_wrong_log_is_refused_in_one_line(tmp_path, what):
     message = refusal_line(written(tmp_path, content, "log.txt"), read_log)
     assert words in message
     assert message.startswith("log.txt")
+    assert ".." not in message.replace("...", "")
 
 
 WRONG_MAPS = {

@@ -138,11 +138,9 @@ def by_paper(answer: Part, known: Sequence[Part], apart: Sequence[str]) -> list[
     numbers = ("restitution_threshold", "margin", "paper_probability_stable")
     columns = (NAME, *map(q.column, numbers), text_column("verdict", lambda row: row.paper_verdict))
     model = q.fill(answer.chain, "in the plane, balls as dampers of {race_damping}, Eq. 18")
-    why = q.fill(
-        answer.chain,
-        f" It differs for {', '.join(apart)}: a ball that may spin yields to a slow push by "
-        "{race_damping_free_spin}, and takes more energy from an impact.",
-    )
+    ball = "a ball that may spin resists a slow push with only {race_damping_free_spin}"
+    tilts = "the cage also tilts and moves along the axis, and " * (answer.cage.motion == "space")
+    why = q.fill(answer.chain, f" It differs for {', '.join(apart)}: in the full model {tilts}{ball}.")
     each = by_verdict((row.paper_verdict, row.name) for row in rows)
     caption = f"{q.begun(model)}.{why if apart else ''}"
     return [

@@ -28,6 +28,8 @@ MOST_SHOWN = 20_000
 STEADY = 0.5
 """Coherence from which tilt and offset have a phase worth a number."""
 
+FREE = "free: with one state the motion lasts with forces above what the races hold"
+
 SIGNS = (
     "A stable cage leaves the torque to balls on races. A whirl is heard, and shows by a torque that "
     "grows faster with speed than theirs, towards its square (Lewis and others, 44th AMS 2018)."
@@ -90,6 +92,10 @@ def compute(study: Study, options: Options) -> SimulationAnswer:
         return chain, cage, followed(cage, kick, settings.duration)
 
     history, signs = followed(cage, speed), None
+    may_change = solution.design.ball_model is BallModel.AUTO and eta is None and lasts(history)
+    if may_change and history.largest_contact_force > force_limit(cage, transmitted_force(solution)):
+        cage = moving_cage(solution, cage.ball_cage_friction, BallModel.FREE)
+        history = followed(cage, speed)
     if eta is None and not study.operation.ramp_time:
         other, less = slower(solution), SLOWER * speed
         its = of.cage_of(other)
@@ -152,7 +158,7 @@ def run_facts(answer: Part) -> Facts:
         ("Operation", "; ".join(figure_heading(answer)[1:])),
         ("Initial disturbance", fill(answer, f"{{kick}}; run {answer.run} of seed {answer.seed}")),
         ("Pocket friction", pocket_friction(answer) or show(cage, "ball_cage_friction")),
-        ("Ball", answer.values["study"]["cage"]["ball"]["value"]),
+        ("Ball", answer.values["study"]["cage"]["ball"]["value"] or FREE * ("free_ball" in cage)),
         ("Race damping", damping),
         ("Clearance", f"{land}; pockets {show(answer.chain, 'half_play')} each way{axial}"),
         ("Judged", fill(answer, judged)),

@@ -145,11 +145,14 @@ def too_few(runs: int) -> str:
 
 def settles(cage: MovingCage, ensemble: Ensemble, kick: int) -> str:
     """Return what share of the runs from the worst kick settles or rolls, and how hard they roll or rub."""
-    outcome = ensemble.outcome[kick]
+    outcome, every = ensemble.outcome[kick], ensemble.outcome
     settled, rolling = outcome == RunOutcome.SETTLES, outcome == RunOutcome.ROLLS
     ends = "settle or roll in their pockets" if rolling.any() else "settle"
     share, speed = _share(settled | rolling), ensemble.kicks[kick]
-    said = f"{share} of the runs {ends} from the worst disturbance, {speed:g} m/s"
+    start = f"from the worst disturbance, {speed:g} m/s"
+    if len(every) > 1 and ((every == RunOutcome.SETTLES) | (every == RunOutcome.ROLLS)).all():
+        start = "from every disturbance"
+    said = f"{share} of the runs {ends} {start}"
     if np.count_nonzero(rolling) > np.count_nonzero(settled):
         force = median(ensemble.largest_contact_force[kick][rolling])
         power = median(ensemble.pocket_power[kick][rolling])

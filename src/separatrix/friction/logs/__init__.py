@@ -94,7 +94,7 @@ def read_log(path: str | Path, column_map: ColumnMap | None = None) -> tuple[Raw
 
 
 def _unmapped(content: Content, draft: Draft, text: str, why: UnfitError | None) -> UnmappedError:
-    first, count = printable(draft.questions[0], 250).rstrip("?"), len(draft.questions)
+    first, count = printable(draft.questions[0], 250).rstrip("?."), len(draft.questions)
     like = "" if why is None else f"is like {draft.given.name}, but not the same, and "
     rule = f"{like}has {count} open questions, the first: {first}"
     rule = rule if count > 1 else f"{like}has an open question: {first}"

@@ -270,7 +270,8 @@ def scale_for(block: tables.Block, i: int, meaning: str, columns: ColumnMap) -> 
         raise UnfitError(where, rule, f'"{printable(", ".join(stated))}"', cure("..."))
     if not stated and meaning not in ("friction", "cycles"):
         raise UnfitError(where, "has no unit, so that its meaning is not certain", cure=cure("..."))
-    return (known[stated[0]] or naming.Scale(), stated[0]) if stated else (naming.Scale(), "")
+    unit = stated[0] if stated else ""
+    return known.get(unit) or naming.Scale(), "" if naming.plain(unit) in naming.SYMBOLS["friction"] else unit
 
 
 def in_si(block: tables.Block, columns: ColumnMap) -> Read:
@@ -317,7 +318,8 @@ def _values(
         return values
     cell, where = cells[wrong[0]], block.at(wrong[0], i)
     bare = cell.rstrip(tables.PERCENT)
-    cure = f"If that means a missing value, add below [format] in the column map: missing = [{shown(bare)}]."
+    cure = f"If that means a missing value, add below [format] in the column map: missing = [{shown(bare)}]"
+    cure += f"; if the table ends there, ends = [{shown(bare)}]." if i == 0 else "."
     got = f'"{printable(bare)}"'
     if form:
         raise InputError(where, f'must be a time ("{form}")', got, f"Forms of times: {TIMES}.")

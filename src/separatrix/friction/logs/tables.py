@@ -320,21 +320,26 @@ def first_table(
     rows = (i for i in near if is_row(fields_of(lines[i], separator), missing, blanks=separator == " "))
     last = -2
     for i in rows:
-        if i == last + 1 and len(fields_of(lines[i], separator)) == len(fields_of(lines[last], separator)):
+        two = fields_of(lines[max(last, 0)], separator), fields_of(lines[i], separator)
+        if i == last + 1 and len(two[0]) == len(two[1]):
             break
         last = i
     else:
         return None
-    width = len(fields_of(lines[last], separator))
+    above = range(last - 1, max(0, last - 8) - 1, -1)
+    ways = {i: names_of(lines[i], separator) for i in above if lines[i].strip(f"{separator} \t")}
+    width = len(two[0])
+    filled = max(k + 1 for row in two for k, one in enumerate(row) if one)  # rows may end with separators
     fitting: list[tuple[int, list[str]]] = []
-    for i in range(last - 1, max(0, last - 8) - 1, -1):
-        ways = names_of(lines[i], separator) if lines[i].strip(f"{separator} \t") else []
-        fitting += [(i, one) for one in ways if _fits(one, width, missing)][:1]
+    for count in (width, filled):
+        each = ((i, [one for one in some if _fits(one, count, missing)]) for i, some in ways.items())
+        fitting = fitting or [(i, some[0]) for i, some in each if some]
     if not fitting:
         return Heads(None, [f"column {i + 1}" for i in range(width)], [""] * width, last)
     line, names = fitting[0]
     if len(fitting) > 1 and is_units(names) and not is_units(fitting[1][1]):
-        return Heads(*fitting[1], names, last)
+        line, heads = fitting[1]
+        return Heads(line, heads, (names + [""] * len(heads))[: len(heads)], last)
     return Heads(line, names, [""] * len(names), last)
 
 

@@ -38,9 +38,9 @@ def footnotes(rows: Sequence[Part], level: Level = Level.ALWAYS) -> list[Note]:
     """Return in what respect frictions are extrapolated; on a screen, the first one."""
     measured = [row for row in rows if "friction" in row]
     who = grouped((sentence, row.name) for row in measured for sentence in row.extrapolation)
-    each = [
-        one if len(names) == len(measured) else f"{one} ({', '.join(names)})" for one, names in who.items()
-    ]
+    everyone = [one for one, names in who.items() if len(names) == len(measured)]
+    rest = [f"{one} ({', '.join(names)})" for one, names in who.items() if one not in everyone]
+    each = everyone + rest
     brief = each[0] + "; more: `--full`" * bool(each[1:]) if each else ""
     known = (("; ".join(each), Level.LONG), (brief, Level.BRIEF))
     words = f"{MARK} extrapolated beyond the tests"
@@ -130,10 +130,10 @@ def _safety(first: Sequence[Part]) -> str:
     lowest = min(first, key=lambda row: row.get("safety_factor_low") or inf)
     factor = show(lowest, "safety_factor")
     at = "at least " if len(first) > 1 and not factor.startswith(">") else ""
-    return (
-        f"Safety factor {at}{factor}: half the runs whirl at a friction of {criticals}, the pockets have "
-        f"{frictions}."
-    )
+    half = f"half the runs whirl at a friction of {criticals}"
+    if criticals.startswith(">"):
+        half = f"at no friction up to {criticals[2:]} half the runs whirl"
+    return f"Safety factor {at}{factor}: {half}, the pockets have {frictions}."
 
 
 def deciding(answer: Part, rows: Sequence[Part]) -> Iterator[str]:
@@ -144,13 +144,19 @@ def deciding(answer: Part, rows: Sequence[Part]) -> Iterator[str]:
     best = known[0]
     both = fill(best, "land clearance {land_clearance}, pocket clearance {pocket_clearance}")
     wide = next((one for one in answer.effects or () if one.name == "wide_land"), None)
-    if wide is not None:
+    own = next((row for row in known if row.name == answer.candidate), None)
+    if wide is not None and own is not None:
         critical = wide.get("own_critical_friction") or wide.own_critical_friction_low
-        above = [row.name for row in known if row.friction > critical]
-        words = f"The land stops the cage before its pockets can drive it ({both}): with {wide.change} the "
-        words += f"critical friction of {answer.candidate} would be {{own_critical_friction}}"
-        whose = f", less than the friction of {', '.join(above)}" if above else ""
-        yield f"{fill(wide, words)}{whose}."
+        words = f"With {wide.change} the critical friction of {answer.candidate} would be "
+        words += fill(wide, "{own_critical_friction}")
+        whirling = [row.name for row in known if row.verdict != "STABLE"]
+        above = [row.name for row in known if row.friction > critical and row.name not in whirling]
+        if (wide.get("own_critical_friction_high") or inf) >= own.own_critical_friction_low:
+            yield f"The land stops the cage before its pockets do ({both}) but does not decide. {words}."
+        else:
+            steadies = "is not enough for " + ", ".join(whirling) if whirling else "keeps it stable"
+            whose = f", less than the friction of {', '.join(above)}" if above else ""
+            yield f"The land stops the cage before its pockets do ({both}), which {steadies}. {words}{whose}."
     elif best.get("land_clearance") is not None and any(row.verdict != "STABLE" for row in known):
         words = "The pockets decide, not the land (clearances {pocket_clearance}, {land_clearance})."
         yield fill(best, words)
