@@ -43,6 +43,7 @@ WRONG = {
     "a byte that Windows-1252 lacks": (csv() + b"caf\xe9 \x81\n", "line 22 cannot be read as cp1252 text; got byte 0x81"),
     "no header": (csv().split(b"\n", 1)[1], "has 2 open questions, the first: which column is the friction"),
     "a row with too few fields": (changed(csv(), 9, "3.5"), "line 9 has 1 fields where the rows before it have 2; got \"3.5\". Mend or delete this line."),
+    "an invisible character between fields": (changed(csv(), 9, "3.5\ufeff0.1"), r'breaks the table; got "3.5\xfeff0.1". Delete it, or add below [format] of a column map: skip = ["3.5\U0000feff0.1"]'),
     "a last row cut off": (csv() + b"10.0", 'line 22 has 1 fields where the rows before it have 2; got "10.0"'),
     "text in a number column": (changed(csv(), 9, "3.5,abc"), 'line 9, column "COF" must be a number; got "abc"'),
     "a decimal comma in one row": (changed(csv(separator=";"), 9, "3,5;0,1"), 'has an open question: has points and commas in its numbers: "0.000000" and "3,5"'),
