@@ -77,7 +77,7 @@ def seeds(kind: str, more: More) -> dict[str, bytes]:
         books = [one if isinstance(one, bytes) else workbook(one) for one in workbooks.READ.values()]
         coded = [one.encode("cp1252") if isinstance(one, str) else one for one in logs]
         found = {f"{i}.{'xlsx' if one[:2] == b'PK' else 'txt'}": one for i, one in enumerate(coded + books)}
-    return found | {path.name: path.read_bytes() for path in more}
+    return found | {path.name[-20:]: path.read_bytes() for path in more}
 
 
 # Changes of a text, which has a character for each byte.
@@ -256,17 +256,19 @@ def tried(kind: str, more: More, numbers: range) -> tuple[Counter[str], list[str
     return outcomes, faults, longest
 
 
-def strict() -> None:
-    """Make a warning an error in a worker, and memory without end, too."""
+def prepared(kind: str, more: More) -> None:
+    """Make a warning an error in a worker, and memory without end, too; load what the seeds need."""
     warnings.simplefilter("error")
     resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
+    for name in seeds(kind, more):
+        answer_of_seed(kind, more, name, 0)
 
 
 def main(kind: str, count: int, first: int, more: More) -> int:
     """Print each fault, and how often each outcome came; return the number of faults."""
     start, outcomes, longest = time.monotonic(), Counter(), 0.0
     tasks = [range(i, min(i + AT_ONCE, first + count)) for i in range(first, first + count, AT_ONCE)]
-    with ProcessPoolExecutor(2, initializer=strict) as pool:
+    with ProcessPoolExecutor(2, initializer=prepared, initargs=(kind, more)) as pool:
         for found, faults, most in pool.map(partial(tried, kind, more), tasks):
             outcomes, longest = outcomes + found, max(longest, most)
             print(*faults, sep="\n", end="", flush=True)
