@@ -251,7 +251,7 @@ def tried(kind: str, more: More, numbers: range) -> tuple[Counter[str], list[str
             outcomes["no meaning: " * (number % 10 == 0) + found[0]] += 1
         except Exception:  # noqa: BLE001 - every one is a fault of the program
             outcomes["FAULT"] += 1
-            faults.append(f"mutant {number} of {name}:\n{traceback.format_exc(limit=-6)}")
+            faults.append(f"mutant {number} of {name}:\n{traceback.format_exc()}")
     faulthandler.cancel_dump_traceback_later()
     return outcomes, faults, longest
 
