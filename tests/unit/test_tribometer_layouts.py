@@ -254,6 +254,14 @@ def test_a_step_that_underflows_is_reduced(tmp_path):
     assert 0.09 < reduce_log(log).friction < 0.11
 
 
+def test_a_ratio_of_forces_that_overflows_is_left_out(tmp_path):
+    """1e10 N over 1e-300 N: a row without a friction."""
+    rows = [f"{i},1.2,10" for i in range(60)]
+    rows[30] = "30,1e10,1e-300"
+    (log,) = read(tmp_path, "time [s],Ff [N],Fn [N]\n" + "\n".join(rows) + "\n")
+    assert (log.rows, log.missing) == (59, 1)
+
+
 def test_neither_many_digits_nor_many_tables_take_long(tmp_path):
     """Digits and a letter took the square of their number, hours; twenty thousand tables 1.7 GB."""
     assert not is_number("1" * 1_000_000 + "x")
