@@ -3,10 +3,10 @@
     python benchmarks/mutants.py studies|logs COUNT [FIRST] [FILES...]
 
 A number is the same mutant in every run. FIRST and those after it are made, COUNT in all, from the files of
-package and tests and from FILES. Every tenth has one change without meaning, and must have the answer of its
+package and tests and from FILES. One in ten has a change without meaning, and must have the answer of its
 seed; the others have one that may have a meaning, or several, two on average. A study is answered as by
-`check` and `bearing`, and every tenth as by `restitution`; with the exact contact, which takes seconds, one
-in 200. A log is reduced as by `tribometer`, and once more with the draft of a column map that it got.
+`check` and `bearing`, some as by `restitution`; with the exact contact, which takes seconds, only a few. A
+log is reduced as by `tribometer`, and once more with the draft of a column map that it got.
 
 A fault, shown with its number, is an error other than a refusal in lines of where, rule and cure, a warning
 of Python, a number that is not finite, more than `LONGEST`, or another answer where nothing was meant.
@@ -54,6 +54,9 @@ LONGEST = 10.0
 
 MEMORY = 6 * 1024**3
 """Address space of a worker [bytes]."""
+
+NEUTRAL_ONE, RESTITUTION, EXACT = 10, 50, 1000
+"""One in so many has a change without meaning, is answered by `restitution`, with the exact contact."""
 
 AT_ONCE = 100
 """Mutants of one task of a worker."""
@@ -152,7 +155,7 @@ def mutant(kind: str, more: More, number: int) -> tuple[str, bytes]:
     """Return name of the seed and bytes of a mutant."""
     rng = np.random.default_rng([number, kind == "logs"])
     name, content = pick(rng, [*seeds(kind, more).items()])
-    is_neutral, part, parts = number % 10 == 0, "", {}
+    is_neutral, part, parts = number % NEUTRAL_ONE == 0, "", {}
     if content[:2] == b"PK" and (is_neutral or rng.random() < 0.8):  # packed anew, it is a workbook again
         with zipfile.ZipFile(io.BytesIO(content)) as book:
             parts = {one: book.read(one) for one in book.namelist()}
@@ -173,10 +176,10 @@ def mutant(kind: str, more: More, number: int) -> tuple[str, bytes]:
 def answer_to_study(path: Path, number: int) -> tuple[str, list[Any]]:
     """Return what came of a study, and its answers."""
     study = read_study(path)
-    if study.traction.model.value == "exact" and number % 200:
+    if study.traction.model.value == "exact" and number % EXACT:
         return "read, exact contact not computed", [asked_by(study)]
     answers, refused = [], ""
-    for verb in map(verb_named, ("check", "bearing", *["restitution"] * (number % 10 == 0))):
+    for verb in map(verb_named, ("check", "bearing", *["restitution"] * (number % RESTITUTION == 0))):
         try:
             if not any(getattr(study, section) is None for section in verb.needs):
                 found = document(verb, computed(verb, study))
@@ -184,7 +187,8 @@ def answer_to_study(path: Path, number: int) -> tuple[str, list[Any]]:
                 answers.append((json_text(found), page_text(page_of_document(verb, found)), found)[-1])
         except SeparatrixError as error:
             refused = f", {verb.name} refused ({type(error).__name__})"
-            message_of(error)
+            if isinstance(error, InputError):
+                message_of(error)
     return f"read and answered{refused}", answers
 
 
@@ -246,9 +250,10 @@ def tried(kind: str, more: More, numbers: range) -> tuple[Counter[str], list[str
             found = answered(kind, name, content, number)
             longest = max(longest, taken := time.process_time() - begin)
             assert taken < LONGEST, f"took {taken:.1f} s"
-            if number % 10 == 0:
-                assert found == answer_of_seed(kind, more, name, 10 * (number % 200 > 0)), found[1][:1000]
-            outcomes["no meaning: " * (number % 10 == 0) + found[0]] += 1
+            if is_neutral := number % NEUTRAL_ONE == 0:
+                of = next(one for one in (EXACT, RESTITUTION, NEUTRAL_ONE) if number % one == 0)
+                assert found == answer_of_seed(kind, more, name, of), found[1][:1000]
+            outcomes["no meaning: " * is_neutral + found[0]] += 1
         except Exception:  # noqa: BLE001 - every one is a fault of the program
             outcomes["FAULT"] += 1
             faults.append(f"mutant {number} of {name}:\n{traceback.format_exc()}")
@@ -261,7 +266,7 @@ def prepared(kind: str, more: More) -> None:
     warnings.simplefilter("error")
     resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
     for name in seeds(kind, more):
-        answer_of_seed(kind, more, name, 0)
+        answer_of_seed(kind, more, name, EXACT)
 
 
 def main(kind: str, count: int, first: int, more: More) -> int:
