@@ -76,14 +76,20 @@ def written(folder: Path, text: str | bytes, name: str = "study.toml") -> Path:
     return path
 
 
-def refusal(path: str | Path, read=read_study) -> str:
+def message_of(error: InputError) -> str:
     """Return the text of a refusal: a short printable line a mistake, the same from another process."""
+    message = str(error)
+    assert all(one.path and one.rule for one in error.problems or (error,)), message
+    assert all(line.isprintable() and len(line) < 420 for line in message.split("\n")), message
+    assert str(pickle.loads(pickle.dumps(error))) == message  # noqa: S301 - our own bytes
+    return message
+
+
+def refusal(path: str | Path, read=read_study) -> str:
+    """Return the text with which a file is refused."""
     with pytest.raises(InputError) as caught:
         read(path)
-    message = str(caught.value)
-    assert all(line.isprintable() and len(line) < 420 for line in message.split("\n")), message
-    assert str(pickle.loads(pickle.dumps(caught.value))) == message  # noqa: S301 - our own bytes
-    return message
+    return message_of(caught.value)
 
 
 def refusal_line(path: str | Path, read=read_study) -> str:

@@ -84,21 +84,24 @@ CHANGES = {
 }
 
 
+def changed_at(text, pair, change):
+    """The text with one of its pairs of key and value changed in one of the ways."""
+    key, value, changed = pair[1], pair[3], CHANGES[change]
+    wrong = f'{key[:-2]}q"' if key[0] == '"' else f"{key[:-1]}q"
+    if isinstance(changed, tuple):
+        new = f"{key} = {re.sub(*changed, value)}"
+    else:
+        new = changed.format(key=key, value=value, wrong=wrong)
+    return text[: pair.start()] + (new + (pair[4] or "") if new else "") + text[pair.end() :]
+
+
 def decisions(dialect, folder, rules):
     """Refused lines of every mutant, in the order of the values, by the change; the rules by their keys."""
     text, path = FILES[dialect], folder / f"{dialect}.toml"
-    for change, changed in CHANGES.items():
+    for change in CHANGES:
         found = []
         for pair in PAIR.finditer(text):
-            key, value = pair[1], pair[3]
-            wrong = f'{key[:-2]}q"' if key[0] == '"' else f"{key[:-1]}q"
-            if isinstance(changed, tuple):
-                new = f"{key} = {re.sub(*changed, value)}"
-            else:
-                new = changed.format(key=key, value=value, wrong=wrong)
-            path.write_text(
-                text[: pair.start()] + (new + (pair[4] or "") if new else "") + text[pair.end() :]
-            )
+            path.write_text(changed_at(text, pair, change))
             try:
                 READERS[dialect](path)
                 found.append("read")

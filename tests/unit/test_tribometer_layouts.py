@@ -198,6 +198,15 @@ def test_reversals_are_left_out_by_the_position_however_few_rows_a_stroke_has(
     assert any('by the position in column "Position [mm]"' in note for note in log.notes)
 
 
+def test_a_position_that_jumps_within_no_time_still_shows_reversals(tmp_path):
+    """Two rows 1e-320 s apart have no speed between them; the mean is that of sliding, as without them."""
+    lines = reciprocating(20, is_sine=True).splitlines()
+    lines[1:1] = ["0,3.0,20,0.0", "1e-320,3.0,20,0.5"]
+    (log,) = read(tmp_path, "\n".join(lines))
+    assert log.friction.mean() == pytest.approx(0.15, rel=0.002)
+    assert log.rows < 0.8 * 150 * 20
+
+
 def test_a_position_with_too_few_rows_for_reversals_is_reported(tmp_path):
     """Three rows a stroke."""
     (log,) = read(tmp_path, reciprocating(6, is_sine=True))
@@ -249,6 +258,14 @@ def test_a_step_that_underflows_is_reduced(tmp_path):
     rows[30:32] = ["30,1e-200", "31,2e-200"]
     (log,) = read(tmp_path, "time [s],COF\n" + "\n".join(rows) + "\n")
     assert 0.09 < reduce_log(log).friction < 0.11
+
+
+def test_a_ratio_of_forces_that_overflows_is_left_out(tmp_path):
+    """1e10 N over 1e-300 N: a row without a friction."""
+    rows = [f"{i},1.2,10" for i in range(60)]
+    rows[30] = "30,1e10,1e-300"
+    (log,) = read(tmp_path, "time [s],Ff [N],Fn [N]\n" + "\n".join(rows) + "\n")
+    assert (log.rows, log.missing) == (59, 1)
 
 
 def test_neither_many_digits_nor_many_tables_take_long(tmp_path):

@@ -166,6 +166,13 @@ def test_a_wrong_workbook_is_refused_in_one_line(tmp_path, content, words):
     assert words in refusal_line(content, lambda one: logs(tmp_path, one))
 
 
+def test_a_number_of_400_digits_is_missing(tmp_path):
+    """As in text, where it is not finite either."""
+    sheet = PARTS[SHEET_1].replace(b">0.11<", b">" + b"9" * 400 + b"<", 1)
+    (found,) = logs(tmp_path, zipped(PARTS | {SHEET_1: sheet}))
+    assert (found.rows, found.missing) == (8, 1)
+
+
 def test_a_hidden_bomb_is_not_expanded(tmp_path):
     """40 MB behind a declared size of 1 kB."""
     content = zipped(PARTS | {"xl/bomb.xml": bytes(40_000_000)})

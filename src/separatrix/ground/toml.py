@@ -192,13 +192,14 @@ def _cure(line: str) -> str:
 
 
 def as_toml(value: object) -> str:
-    """A value in TOML: JSON's escapes are among its own."""
+    """A value in TOML: JSON's escapes are among its own. Invisible characters are spelled out."""
     if isinstance(value, Mapping):
         keys = {key: key if re.fullmatch("[A-Za-z0-9_-]+", key) else as_toml(key) for key in value}
         return "{ " + ", ".join(f"{keys[key]} = {as_toml(one)}" for key, one in value.items()) + " }"
     if isinstance(value, (list, tuple)):
         return f"[{', '.join(map(as_toml, value))}]"
-    return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+    text = json.dumps(value, ensure_ascii=False)
+    return "".join(c if c.isprintable() else f"\\U{ord(c):08x}" for c in text)
 
 
 def folded(name: str) -> str:

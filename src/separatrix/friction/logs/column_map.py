@@ -329,6 +329,7 @@ def _meanings_and_units(columns: Mapping[str, Column]) -> Faults:
             yield Fault(("columns", meaning), "is not the meaning of a column", nearest(meaning, known), "")
         elif one.unit is not None and scale_of(one.unit, meaning) is None:
             cure = "The draft asks for it: write the true one." if one.unit == "..." else ""
+            cure = 'Write a format of dates like "%d.%m.%Y %H:%M:%S".' if "%" in one.unit else cure
             rule = f"must be a unit such as {known_units(meaning)}"
             yield Fault(("columns", meaning, "unit"), rule, cure, shown(one.unit))
 

@@ -466,7 +466,8 @@ def _friction(arrays: Arrays, force: float | None, source: str, notes: list[str]
     if released:
         notes.append(f"{released} rows without compression (normal force zero or pulling) are left out")
     friction = np.full(len(tangential), np.nan)
-    np.divide(tangential, normal_force, out=friction, where=normal_force > 0.0)
+    with np.errstate(over="ignore"):  # such a ratio is not a friction, and left out
+        np.divide(tangential, normal_force, out=friction, where=normal_force > 0.0)
     return np.where(np.isfinite(friction), friction, np.nan)
 
 

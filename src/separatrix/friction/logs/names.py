@@ -48,6 +48,9 @@ CLOCKS = {
 }
 """Units of times written as text, with the spellings of each; a format of a date is another: "%d.%m.%Y"."""
 
+DATE_PARTS = frozenset("aAbBdfHIjmMpSyYz")
+"""Letters of a format of dates, each once: those of Python but for weeks and what depends on the locale."""
+
 _NONE = frozenset({"", "-", "--", "1", "none", "dimensionless", "n/n", "unitless", "ohne", "*", "/"})
 UNIT_WORDS = frozenset(
     [spelling.casefold() for table in units.UNITS.values() for spelling in table]
@@ -123,7 +126,8 @@ def scale_in(unit: str, si: str) -> Scale | None:
 
 def time_form(unit: str) -> str:
     """How times are written as text: a key of `CLOCKS`, or a format of dates; empty for a usual unit."""
-    if re.search("%[A-Za-z]", unit):
+    parts = re.findall("%(.?)", unit)
+    if parts and len(set(parts) & DATE_PARTS) == len(parts):
         return unit
     spelling = unit.strip().casefold().partition(".")[0]
     return next((form for form, spellings in CLOCKS.items() if spelling in spellings), "")

@@ -28,6 +28,7 @@ STROKE = 4  # rows of a stroke, on average, below which a position does not show
 STRETCH = 8  # rows of one direction, in the middle, from which strokes can be detected
 SMOOTH = 0.3  # step between rows, over the usual one, below which friction does not fluctuate: nothing slides
 WINDOW = 7  # rows of the running median of such steps
+FASTEST = 1e100  # slope of a position, in its unit a second, from which it is not a speed: squares overflow
 FEWEST = 0.2  # share of the rows that must slide, or the column does not show it
 
 
@@ -98,7 +99,7 @@ def _slope(position: Array, time: Array | None, kept: Rows) -> Array | None:
     along = position[kept]
     steps = np.diff(along)
     spans = np.ones(steps.size) if time is None else np.diff(time[kept])
-    slopes = np.divide(steps, spans, out=np.zeros(steps.size), where=spans > 0.0)
+    slopes = np.divide(steps, spans, out=np.zeros(steps.size), where=spans > np.abs(steps) / FASTEST)
     slopes = median_filter(slopes, 3, mode="nearest")
     moving = np.abs(steps) > 1e-9 * max(float(np.ptp(along)), 1e-300)
     turns = int((np.diff(np.sign(slopes[moving])) != 0).sum())

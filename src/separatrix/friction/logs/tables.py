@@ -167,7 +167,7 @@ def _written(cell: Any) -> str:
         return ""
     if isinstance(value, (int, float)) and not isinstance(value, bool):
         is_percentage = "%" in _LITERAL.sub("", cell.number_format)
-        return repr(float(value)) + (PERCENT if is_percentage else "")
+        return repr(float(str(value))) + (PERCENT if is_percentage else "")
     if isinstance(value, datetime.timedelta):
         hours, rest = divmod(value.total_seconds(), 3600.0)
         return f"{hours:.0f}:{rest // 60:02.0f}:{rest % 60:09.6f}"
