@@ -4,6 +4,7 @@ import json
 import re
 import shutil
 import tomllib
+from pathlib import Path
 
 import pytest
 from commands import SMALL, root_of
@@ -123,6 +124,23 @@ def test_a_draft_outlives_the_server_and_is_saved_or_discarded(page):
     page.post("/save/small.toml")
     assert 'mass = "27 g"' in (root_of(page) / "small.toml").read_text()
     assert not draft.draft_path(root_of(page) / "small.toml").exists()
+
+
+def test_a_server_that_is_killed_while_it_writes_leaves_the_draft_before(tmp_path, monkeypatch):
+    """A draft takes its place when it is whole."""
+    study = tmp_path / "small.toml"
+    study.write_text(SMALL)
+    draft.keep(study, f"{SMALL}# first\n")
+
+    def half(path, text, **options):
+        path.write_bytes(text.encode()[:20])
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(Path, "write_text", half)
+    with pytest.raises(KeyboardInterrupt):
+        draft.keep(study, f"{SMALL}# second\n")
+    assert draft.current(study).read_text() == f"{SMALL}# first\n"
+    assert {one.name for one in tmp_path.iterdir()} == {"small.toml", ".small.toml.draft"}
 
 
 def test_a_study_with_a_fault_is_not_run(page):

@@ -16,7 +16,7 @@ from separatrix.ground.document import part_of
 from separatrix.ground.errors import InputError
 from separatrix.ground.quantity import Estimate
 from separatrix.present import html, quantity_text
-from separatrix.present.blocks import Facts, Heading, Level, Note, Picture, Table, View
+from separatrix.present.blocks import Facts, Heading, Level, Note, Picture, Table, View, spans
 from separatrix.present.draw import save
 from separatrix.present.figure import Axis, Figure, Panel, Trace
 from separatrix.present.pdf import pdf
@@ -361,6 +361,15 @@ def test_blocks_are_where_their_level_says(answers):
         heads = [(a.depth, b.depth) for a, b in pairs if isinstance(a, Heading) and isinstance(b, Heading)]
         assert all(inner > outer for outer, inner in heads)
     assert "--full" not in text(page, Level.REPORT)
+
+
+def test_dollar_signs_of_a_user_are_no_formula():
+    """A name between two of them is written as it is, on the screen and in a figure; a symbol is one."""
+    said = "air $^$ at $5: $eta$ of `$x`"
+    kinds = [("text", "air $^$ at $5: "), ("symbol", "eta"), ("text", " of "), ("code", "$x")]
+    assert list(spans(said)) == kinds
+    panel = Panel(title=said, x=Axis(label="a [-]"), y=Axis(label="b [-]"), marks=())
+    assert save(Figure(rows=((panel,),))).svg.startswith("<svg")
 
 
 def test_a_click_in_a_figure_is_at_the_values_of_its_axes():

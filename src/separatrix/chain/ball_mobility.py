@@ -546,12 +546,13 @@ def mobility(asked: Rolling, slip_law: SlipLaw = SlipLaw.ELASTIC) -> Mobility:
 def shares_of_balls(asked: Rolling) -> tuple[Array, Array]:
     """Capacity, and slope of its law of traction, of every ball over the most loaded one's, shape (ball,).
 
-    A ball that the inner race hardly touches spins freely and has no slope. Raises as `mobility`.
+    A ball that the inner race hardly touches spins freely and has no slope, unless that is so of
+    the most loaded one: then each has that of its loads, as under an axial load. Raises as `mobility`.
     """
     found, most = asked.state.equilibrium, asked.state.inner.ball
     loads = found.load_inner + found.load_outer
-    slopes = np.zeros(loads.size)
-    for ball in np.flatnonzero(found.load_inner > LEAST_SHARE * found.load_outer):
+    slopes, touched = np.zeros(loads.size), found.load_inner > LEAST_SHARE * found.load_outer
+    for ball in np.flatnonzero(touched if touched[most] else found.load_inner > 0.0):
         slopes[ball] = linear_mobility(asked._replace(ball=int(ball)), SlipLaw.ELASTIC).damping
     return loads / loads[most], slopes / slopes[most]
 

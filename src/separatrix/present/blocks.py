@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from enum import Flag, auto
@@ -256,15 +257,19 @@ def explained(columns: Iterable[Column]) -> str:
     return " ".join(f"{one.head}: {one.meaning}." for one in columns if one.meaning)
 
 
+_MARKED = re.compile(r"`([^`]*)`|\$([A-Za-z]\w*(?:\(\w\))?)\$")
+
+
 def spans(text: str) -> Iterator[tuple[Literal["text", "code", "symbol"], str]]:
-    """Yield the parts of a text: words, what is between backticks, what is between dollar signs."""
-    for i, part in enumerate(text.split("`")):
-        if i % 2:
-            yield "code", part
-            continue
-        for j, piece in enumerate(part.split("$")):
-            if piece:
-                yield ("symbol" if j % 2 else "text"), piece
+    """Yield the parts of a text: words, what is between backticks, a symbol between dollar signs."""
+    end = 0
+    for one in _MARKED.finditer(text):
+        if one.start() > end:
+            yield "text", text[end : one.start()]
+        yield ("code", one[1]) if one[2] is None else ("symbol", one[2])
+        end = one.end()
+    if text[end:]:
+        yield "text", text[end:]
 
 
 def grouped(pairs: Iterable[tuple[Any, Any]]) -> dict[Any, list[Any]]:

@@ -377,7 +377,8 @@ def _literal(text: str) -> str:
 
 def symbols(text: str) -> str:
     """Return a text with its symbols as matplotlib's formulas."""
-    return "".join(f"${_formula(part)}$" if kind == "symbol" else part for kind, part in spans(text))
+    parts = spans(text)
+    return "".join(f"${_formula(part)}$" if kind == "symbol" else _literal(part) for kind, part in parts)
 
 
 def _formula(symbol: str) -> str:

@@ -207,7 +207,8 @@ def mixed(ensemble: Ensemble, counts: tuple[KickCount, ...], kick: int, *, is_su
             f"The start decides: of {count.runs} runs from {count.kick:g} m/s {said}; more runs would not "
             "change that, less friction would."
         )
-    return f"No clear answer from {count.kick:g} m/s: of {count.runs} runs {said}."
+    cure = "more may decide: raise [stability] runs"
+    return f"No clear answer from {count.kick:g} m/s: of {count.runs} runs {said}; {cure}."
 
 
 def few_left(ensemble: Ensemble) -> str:

@@ -19,7 +19,7 @@ from tomlkit.items import Array, Table
 from separatrix.front.cli import asked_of, flag_of, option_value
 from separatrix.front.page.folder import REPORT, Form, Page
 from separatrix.ground.errors import InputError, grouped
-from separatrix.ground.files import is_inside, reading_only_in, write_new
+from separatrix.ground.files import is_inside, reading_only_in, staged, write_new
 from separatrix.ground.reader import document_of
 from separatrix.ground.toml import MOST_BYTES, read_text
 from separatrix.ground.units import NUMBER, shown
@@ -81,10 +81,12 @@ def keep(study: Path, text: str) -> None:
     """Keep a text as the draft of a study; one like the study itself is none."""
     if len(text.encode()) > MOST_BYTES:
         raise InputError(study.name, f"is larger than a study can be, {MOST_BYTES // 1024} kB")
-    is_new = text != read_text(study)
-    draft_path(study).unlink(missing_ok=True)  # also a link in its place
-    if is_new:
-        draft_path(study).write_text(text, encoding="utf-8", newline="\n")
+    path = draft_path(study)
+    if text == read_text(study):
+        path.unlink(missing_ok=True)
+        return
+    with staged(path.parent) as stage:  # whole or not at all, and in place of a link
+        (stage / path.name).write_text(text, encoding="utf-8", newline="\n")
 
 
 # ---- what is wrong

@@ -131,8 +131,9 @@ def _safety(first: Sequence[Part]) -> str:
     factor = show(lowest, "safety_factor")
     at = "at least " if len(first) > 1 and not factor.startswith(">") else ""
     half = f"half the runs whirl at a friction of {criticals}"
-    if criticals.startswith(">"):
-        half = f"at no friction up to {criticals[2:]} half the runs whirl"
+    if not any("own_critical_friction" in row for row in first):
+        searched = number_of(lowest, "own_critical_friction", lowest.own_critical_friction_low)
+        half = f"at no friction up to {searched} half the runs whirl"
     return f"Safety factor {at}{factor}: {half}, the pockets have {frictions}."
 
 
