@@ -169,10 +169,11 @@ def test_every_ball_is_held_by_its_own_loads(change):
     assert change != {"radial_load": 1000.0} or min(slope) < 0.45
 
 
-def test_balls_that_the_inner_race_hardly_touches_are_held_by_their_loads():
-    """Each carries less than a hundredth of its outer load there: shares as even as those loads, none of 0/0."""
+def test_balls_that_the_inner_race_hardly_touches_are_held_alike():
+    """All of them: their motion is that for a hundredth of the outer load, which is the same for each."""
     light = {"axial_load": 10.0, "radial_load": 2.0, "inner_speed": 2094.4}
     state = solve(replace(SHIPPED, operation=replace(SHIPPED.operation, **light)))
     found, cage = state.bearing.equilibrium, moving_cage(state, 0.0)
     assert (found.load_inner < 0.01 * found.load_outer).all()
-    assert found.load_inner.min() / found.load_inner.max() < cage.slope_waves[0] < 1.0
+    # 3 % between the least and the most loaded ball, from their contact angles
+    assert cage.slope_waves[0] == pytest.approx(1.0, abs=0.03)

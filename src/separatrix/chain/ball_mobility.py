@@ -546,8 +546,8 @@ def mobility(asked: Rolling, slip_law: SlipLaw = SlipLaw.ELASTIC) -> Mobility:
 def shares_of_balls(asked: Rolling) -> tuple[Array, Array]:
     """Capacity, and slope of its law of traction, of every ball over the most loaded one's, shape (ball,).
 
-    A ball that the inner race hardly touches spins freely and has no slope, unless it touches none more:
-    then each has that of its loads, as under an axial load. Raises as `mobility`.
+    A ball that the inner race hardly touches spins freely and has no slope, unless that is so of
+    the most loaded one: then each has that of its loads, as under an axial load. Raises as `mobility`.
     """
     found, most = asked.state.equilibrium, asked.state.inner.ball
     loads = found.load_inner + found.load_outer
