@@ -111,7 +111,7 @@ class Equilibrium:
     def most_loaded(self) -> int:
         """Number of the ball with the largest inner load, the outer load deciding where none touches."""
         largest = self.load_inner if self.load_inner.any() else self.load_outer
-        return int(np.argmax(np.round(largest / largest.max(), 9)))
+        return int(np.argmax(np.round(largest / (largest.max() or 1.0), 9)))
 
 
 def contact(result: Equilibrium, bearing: BallBearing, race: Race, ball: int) -> ContactEllipse:
