@@ -94,7 +94,9 @@ ODD = (
     "0 -0.0 -1 1e308 -1e308 1e-308 5e-324 1e999 nan inf -inf 1_0 0x1f 1,5 1.5.2 + 1e-9 1e12 12:30 true "
     '1979-05-27 "x" "5" [] [[[[1]]]] {} {mean=1,count="2"} """ \' \\ # %s {0} $x^2$ ../../etc <b> =1+1 \0 \r '
     "\t \n\n \x1b[31m \u00b5 \u00b2 \u2212 \u0660 \uff11 \u202e \u200b \ufeff \U0001f600 \u0130 \u00df  "
-) + " ".join(("9" * 400, "1" * 5000, "x" * 100_000, "[" * 3000, "a." * 2000 + "a"))
+) + " ".join(("9" * 400, "1" * 5000, "[" * 3000, "a." * 2000 + "a", "LONG"))
+LONG = 100_000
+"""Characters that are written for LONG."""
 
 
 def pick(rng: Rng, of: Any) -> Any:
@@ -165,6 +167,7 @@ def mutant(kind: str, more: More, number: int) -> tuple[str, bytes]:
     if not is_neutral:
         for _ in range(rng.geometric(0.5)):
             text = changed(text, rng, kind, more)
+        text = text.replace("LONG", "x" * LONG)  # at last: patterns take the square of a line's length
     elif not parts and "\0" not in text:  # not in UTF-16 already
         text = pick(rng, NEUTRAL[kind])(text)
     return name, zipped(parts | {part: text.encode("latin-1")}) if parts else text.encode("latin-1")

@@ -71,6 +71,13 @@ def test_218_bearing_at_rest() -> None:
     assert pressure == pytest.approx(1522.4e6, abs=0.06e6)
 
 
+def test_a_load_that_vanishes_presses_all_balls_alike() -> None:
+    """1e-300 N at rest: the load of each ball is 0, so that the first is as loaded as any."""
+    result = equilibrium(BEARING_218, Operation(inner_speed=0.0, axial_load=1e-300), OUTER, 0.15)
+    assert not result.load_outer.any()
+    assert result.most_loaded == 0
+
+
 def test_turbopump_bearing() -> None:
     """50 000 rpm and 2670 N under outer race control, digits as given."""
     result = equilibrium(LE7, Operation(inner_speed=50_000 * RPM, axial_load=2670.0), OUTER, 0.1)
