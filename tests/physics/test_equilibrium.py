@@ -475,11 +475,3 @@ def test_a_load_of_a_micronewton_is_carried(radial: float) -> None:
     result = equilibrium(BEARING, operation, KinematicModel.OUTER_RACE_CONTROL, 0.1)
     carried = float((result.load_inner * np.sin(result.contact_angle_inner)).sum())
     assert carried == pytest.approx(1e-6, rel=1e-3)  # what `LEAST` accepts
-
-
-def test_a_load_that_underflows_at_rest_presses_no_ball():
-    """The least number there is, 5e-324 N, has no half: sixteen balls share nothing."""
-    result = equilibrium(BEARING_218, Operation(inner_speed=0.0, axial_load=5e-324), OUTER, 0.15)
-    assert not result.load_inner.any()
-    assert result.most_loaded == 0
-    assert contact(result, BEARING_218, Race.INNER, 0).max_pressure == 0.0
