@@ -9,6 +9,7 @@ from test_reference_tables import missing
 from separatrix.chain.impact_restitution import restitution_factor
 from separatrix.ground.document import Part, part_of
 from separatrix.ground.errors import InputError
+from separatrix.ground.quantity import Estimate
 from separatrix.present.blocks import Level, Picture
 from separatrix.present.figure import Across, Trace
 from separatrix.present.text import text
@@ -16,7 +17,7 @@ from separatrix.study.reading import read_study
 from separatrix.verbs import bearing, compare, computed, tribometer, verb_named
 from separatrix.verbs.answer_files import document, read_answer, read_answers, read_folder
 from separatrix.verbs.compare import compared as compared_answers
-from separatrix.verbs.compare import difference_interval, differing, results
+from separatrix.verbs.compare import RESULTS, difference_interval, differing, results
 from separatrix.verbs.map import map_figure, nearest_words, unchanged
 from separatrix.verbs.parts.bearing_drawing import CAGE, bearing_picture, section_of
 from separatrix.verbs.parts.verdict_blocks import deciding, linear_law, pocket_friction, verdict_sentences
@@ -408,6 +409,15 @@ def test_noise_is_judged_by_counts_intervals_and_errors():
     }
     low, high = 0.1 - 1.959964 * 0.01, 0.1 + 1.959964 * 0.01
     assert (rows["friction"].first.low, rows["friction"].first.high) == pytest.approx((low, high))
+
+
+def test_a_threshold_at_the_top_is_beyond_its_lower_end_in_a_comparison_too():
+    """As in its own answer; the change of it is a number."""
+    side = {"value": 1.0, "low": 0.97, "high": 1.0}
+    row = {"name": "restitution_threshold", "first": side, "change": side, "beyond_noise": None}
+    first, change = (next(one for one in RESULTS if one.head == head) for head in ("first", "change"))
+    assert first.cell(Part(row, {})).value == Estimate(None, 0.97)
+    assert change.cell(Part(row, {})).value == Estimate(1.0, 0.97, 1.0)
 
 
 def test_the_most_loaded_ball_is_compared(tmp_path):
