@@ -16,8 +16,8 @@ from separatrix.present.text import text
 from separatrix.study.reading import read_study
 from separatrix.verbs import bearing, compare, computed, tribometer, verb_named
 from separatrix.verbs.answer_files import document, read_answer, read_answers, read_folder
-from separatrix.verbs.compare import compared as compared_answers
 from separatrix.verbs.compare import RESULTS, difference_interval, differing, results
+from separatrix.verbs.compare import compared as compared_answers
 from separatrix.verbs.map import map_figure, nearest_words, unchanged
 from separatrix.verbs.parts.bearing_drawing import CAGE, bearing_picture, section_of
 from separatrix.verbs.parts.verdict_blocks import deciding, linear_law, pocket_friction, verdict_sentences
