@@ -108,6 +108,16 @@ def test_check_says_what_a_moving_cage_will_be_refused_for(tmp_path, edits, more
         assert (verb, str(refused.value)) in said
 
 
+def test_notes_do_not_stand_below_uncertain_inputs_that_are_not_there(tmp_path):
+    """A guess that is noted is no such input; one with a distribution has the heading."""
+    for mass, there in (("25 g", False), ("25 g +- 10 %", True)):
+        path = tmp_path / "noted.toml"
+        path.write_text(f'extends = "le7"\n[cage]\nmass = "{mass}"\npocket_clearance = "0.6 mm"\n{LAND}')
+        shown = text(verb_named("check").page(answer("check", read_study(path))))
+        assert "land_stiffness 10 MN/m" in shown
+        assert ("Uncertain inputs" in shown) is there
+
+
 def test_a_verb_that_lacks_a_section_is_refused_for_that():
     """Every verb of a cage, where the study has none, and the first sentence says so."""
     found = answer("check", read_study("le7"))
@@ -195,6 +205,7 @@ def mapped(**more):
     return part_of({**found, "study": {"film": {"is_bare": True}}, "units": {"kick": "m/s"}, **more})
 
 
+LAND = 'guidance = "outer"\nland_clearance = "1 mm"\nball_cage_stiffness = "3e6 N/m"\n'
 CRITICAL = "own_critical_friction"
 
 
