@@ -105,6 +105,13 @@ def test_few_judged_samples_take_the_whole_run():
     assert (judged, whole) == (pytest.approx(1.0), pytest.approx(math.sqrt(2.5), rel=1e-3))
 
 
+def test_a_whirl_that_is_judged_early_has_the_speed_it_grows_to():
+    """Judged before it grows, from 1 to 3 m/s; the last fifth of the run shows the larger speed."""
+    velocity = np.stack([np.where(0.5 * TIME[-1] > TIME, 1.0, 3.0), 0.0 * TIME], axis=1)
+    found = analyse(cage(), history(velocity=velocity, judged_from=0.0, followed=0.3 * TIME[-1]))
+    assert (found.whirl_speed, found.grown_speed) == (pytest.approx(1.0), pytest.approx(3.0))
+
+
 def test_shares_of_the_pocket_add_up():
     """Impulse in front, behind and at the axial poles is all of it."""
     force, angle = np.zeros((TIME.size, BALLS)), np.zeros((TIME.size, BALLS))

@@ -124,7 +124,8 @@ def test_the_friction_table_is_the_paper_s():
             assert friction is None or friction.mean == float(value)
     known = {"temperature": (77.0, 77.0), "slip_speed": (1.0, 5.0), "normal_force": (10.0, 140.0)}
     assert table.conditions == known
-    assert set(table.friction) == set(LIBRARY.names("cage material")) - {"PEEK"}  # records for the pocket
+    for name in set(LIBRARY.names("cage material")) - set(table.friction):  # of makers, for pocket and mass
+        assert LIBRARY.material("cage material", name).confidence.startswith("modulus: maker")
     text = (DATA / "pin-on-disk-77K.toml").read_text(encoding="utf-8")
     for words in ("table 3", "Typed in", "absent", "1 to 5 m/s", "1 to 14 daN", "table 2", "lost"):
         assert words in text

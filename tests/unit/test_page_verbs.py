@@ -9,14 +9,15 @@ from test_reference_tables import missing
 from separatrix.chain.impact_restitution import restitution_factor
 from separatrix.ground.document import Part, part_of
 from separatrix.ground.errors import InputError
+from separatrix.ground.quantity import Estimate
 from separatrix.present.blocks import Level, Picture
 from separatrix.present.figure import Across, Trace
 from separatrix.present.text import text
 from separatrix.study.reading import read_study
 from separatrix.verbs import bearing, compare, computed, tribometer, verb_named
 from separatrix.verbs.answer_files import document, read_answer, read_answers, read_folder
+from separatrix.verbs.compare import RESULTS, difference_interval, differing, results
 from separatrix.verbs.compare import compared as compared_answers
-from separatrix.verbs.compare import difference_interval, differing, results
 from separatrix.verbs.map import map_figure, nearest_words, unchanged
 from separatrix.verbs.parts.bearing_drawing import CAGE, bearing_picture, section_of
 from separatrix.verbs.parts.verdict_blocks import deciding, linear_law, pocket_friction, verdict_sentences
@@ -107,6 +108,16 @@ def test_check_says_what_a_moving_cage_will_be_refused_for(tmp_path, edits, more
         assert (verb, str(refused.value)) in said
 
 
+def test_notes_do_not_stand_below_uncertain_inputs_that_are_not_there(tmp_path):
+    """A guess that is noted is no such input; one with a distribution has the heading."""
+    for mass, there in (("25 g", False), ("25 g +- 10 %", True)):
+        path = tmp_path / "noted.toml"
+        path.write_text(f'extends = "le7"\n[cage]\nmass = "{mass}"\npocket_clearance = "0.6 mm"\n{LAND}')
+        shown = text(verb_named("check").page(answer("check", read_study(path))))
+        assert "land_stiffness 10 MN/m" in shown
+        assert ("Uncertain inputs" in shown) is there
+
+
 def test_a_verb_that_lacks_a_section_is_refused_for_that():
     """Every verb of a cage, where the study has none, and the first sentence says so."""
     found = answer("check", read_study("le7"))
@@ -194,6 +205,7 @@ def mapped(**more):
     return part_of({**found, "study": {"film": {"is_bare": True}}, "units": {"kick": "m/s"}, **more})
 
 
+LAND = 'guidance = "outer"\nland_clearance = "1 mm"\nball_cage_stiffness = "3e6 N/m"\n'
 CRITICAL = "own_critical_friction"
 
 
@@ -408,6 +420,15 @@ def test_noise_is_judged_by_counts_intervals_and_errors():
     }
     low, high = 0.1 - 1.959964 * 0.01, 0.1 + 1.959964 * 0.01
     assert (rows["friction"].first.low, rows["friction"].first.high) == pytest.approx((low, high))
+
+
+def test_a_threshold_at_the_top_is_beyond_its_lower_end_in_a_comparison_too():
+    """As in its own answer; the change of it is a number."""
+    side = {"value": 1.0, "low": 0.97, "high": 1.0}
+    row = {"name": "restitution_threshold", "first": side, "change": side, "beyond_noise": None}
+    first, change = (next(one for one in RESULTS if one.head == head) for head in ("first", "change"))
+    assert first.cell(Part(row, {})).value == Estimate(None, 0.97)
+    assert change.cell(Part(row, {})).value == Estimate(1.0, 0.97, 1.0)
 
 
 def test_the_most_loaded_ball_is_compared(tmp_path):

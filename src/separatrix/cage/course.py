@@ -312,6 +312,7 @@ class CourseAnalysis:
 
     run_length: Second  # of the samples
     whirl_speed: MetrePerSecond  # root of the mean square speed of the centre at the end, seen from the balls
+    grown_speed: MetrePerSecond  # the same in the last fifth of the samples: a whirl grows after it is judged
     cage_slip: Ratio | None
     """By how much the cage turns slower than the ball set at the end, over that; None at rest."""
     tilt_phase: Radian | None  # from offset to lean at the end; 0: the axis leans outward where the centre is
@@ -340,13 +341,15 @@ def analyse(cage: MovingCage, history: History) -> CourseAnalysis:
     step = np.gradient(time) if time.size > 1 else np.ones(1)
     impulse, along = history.contact_force * step[:, np.newaxis], sense * np.cos(history.contact_angle)
     total, pole = float(impulse.sum()), math.cos(math.pi / 4.0)
+    squares = np.sum(history.velocity**2, axis=1)
 
     def share(near: NDArray[np.bool_]) -> Ratio | None:
         return float(impulse[near].sum()) / total if total > 0.0 else None
 
     return CourseAnalysis(
         run_length=float(time[-1]),
-        whirl_speed=math.sqrt(float(np.mean(np.sum(history.velocity[here] ** 2, axis=1)))),
+        whirl_speed=math.sqrt(float(np.mean(squares[here]))),
+        grown_speed=math.sqrt(float(np.mean(squares[time >= 0.8 * time[-1]]))),
         cage_slip=-integral(time[here], history.rotation_rate[here]) / by_balls if by_balls else None,
         tilt_phase=None if phase is None else sense * phase,
         tilt_coherence=coherence,

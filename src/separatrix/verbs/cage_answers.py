@@ -120,7 +120,8 @@ def _of_cage(found: OfCage) -> Node:
 @shape.register
 def _(found: SimulationAnswer) -> Node:
     """A motion that does not last has no whirl, a start-up no signs of a steady speed."""
-    none = {"whirl_frequency": Leaf(None, "Hz"), "whirl_speed": Leaf(None, "m/s")}
+    speeds = dict.fromkeys(("whirl_speed", "grown_speed"), Leaf(None, "m/s"))
+    none = {"whirl_frequency": Leaf(None, "Hz"), **speeds}
     signs: Node = {} if found.signs else absent(RigSigns)
     whirl = {} if lasts(found.history) else {**none, "whirl_direction": Leaf(0)}
     return _of_cage(found) | signs | whirl

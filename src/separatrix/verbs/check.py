@@ -85,8 +85,7 @@ def page(answer: Part) -> Page:
         bearing_picture(answer, None),
         Heading("Assumed, because the study does not state it", Level.BRIEF),
         facts(*assumed(study), level=Level.BRIEF),
-        Heading("Uncertain inputs"),
-        facts(*inputs),
+        *([Heading("Uncertain inputs"), facts(*inputs)] if inputs else []),
         draws=True,
         appendix=Level.FULL | APPENDIX,
     )

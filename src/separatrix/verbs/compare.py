@@ -309,7 +309,8 @@ def _cell(row: Part, name: str) -> Cell:
     form = ".0f" if isinstance(value, int) else ""
     known = Quantity(label=row.name, unit=quantity(row.name).unit, form=form)
     mark = MARK * bool(name == "change" and row.beyond_noise)
-    return Cell(Estimate(value, low, high), known, row.get("unit"), mark)
+    is_top = name != "change" and low is not None and value >= quantity(row.name).top
+    return Cell(Estimate(None, low) if is_top else Estimate(value, low, high), known, row.get("unit"), mark)
 
 
 def _input(row: Part, which: str) -> str:

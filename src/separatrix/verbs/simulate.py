@@ -179,6 +179,8 @@ def motion_facts(answer: Part) -> Facts:
     if "whirl_frequency" in answer:
         sense = DIRECTIONS[answer.whirl_direction] or "without direction"
         whirl = f"{{whirl_frequency}} {sense}, seen from the balls; the centre moves at {{whirl_speed}}"
+        if answer.followed < answer.run_length:
+            whirl += ", and at {grown_speed} in the last fifth of the run"
     if "cage_slip" in answer:
         slip = "{cage_slip} of the ball set's speed (positive: the cage lags)"
     pocket = "{largest_contact_force}"
