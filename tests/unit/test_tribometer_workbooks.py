@@ -153,6 +153,10 @@ WRONG = {
     "encrypted": (patched(FIRST, FLAGS, b"\x01\x00"), "is encrypted"),
     "strong encryption": (patched(FIRST, FLAGS, b"\x40\x00"), "strong encryption"),
     "cut short": (GOOD[:-30], "is not a readable workbook"),
+    "a row too many": (
+        zipped(PARTS | {SHEET_1: PARTS[SHEET_1].replace(b'row r="10"', b'row r="1048577"')}),
+        "log.xlsx has a row beyond 1048576, the last that a sheet can have. Open it",
+    ),
     "no workbook": (zipped({"a.txt": "x"}), "is not a readable workbook"),
     "entities in a sheet": (zipped(PARTS | {SHEET_1: LAUGHS}), "log.xlsx"),
     "cut XML": (zipped(PARTS | {SHEET_1: PARTS[SHEET_1][:-9]}), "is not a readable workbook"),

@@ -21,7 +21,7 @@ from separatrix.friction.logs.column_map import SEPARATORS, ColumnMap, TextForma
 from separatrix.friction.logs.names import MISSING, REMARKS, UNIT_WORDS, header_parts, ranks
 from separatrix.ground.errors import InputError
 from separatrix.ground.files import size_of, unreadable
-from separatrix.ground.sheet import by_sheet
+from separatrix.ground.sheet import SAVE_AGAIN, by_sheet
 from separatrix.ground.toml import as_toml
 from separatrix.ground.units import printable
 
@@ -145,7 +145,8 @@ def _lines(sheet: Any, label: str) -> list[str]:
         cells = [(i, one) for i, one in enumerate(row[:MOST_COLUMNS]) if not isinstance(one, EmptyCell)]
         count += len(cells)
         if number > MOST_ROWS:
-            raise ValueError(f"row {number}")
+            rule = f"has a row beyond {MOST_ROWS}, the last that a sheet can have"
+            raise InputError(label, rule, cure=SAVE_AGAIN)
         if count > MOST_CELLS:
             raise InputError(label, f"has more than {MOST_CELLS} cells", cure="Save it as CSV.")
         if used := {i: text for i, one in cells if (text := _written(one))}:
