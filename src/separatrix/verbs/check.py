@@ -85,7 +85,8 @@ def page(answer: Part) -> Page:
         bearing_picture(answer, None),
         Heading("Assumed, because the study does not state it", Level.BRIEF),
         facts(*assumed(study), level=Level.BRIEF),
-        *([Heading("Uncertain inputs"), facts(*inputs)] if inputs else []),
+        *([Heading("Uncertain inputs")] if inputs else []),
+        facts(*inputs),
         draws=True,
         appendix=Level.FULL | APPENDIX,
     )
