@@ -213,7 +213,7 @@ def routes(page: Page) -> APIRouter:
         path = page.folder.study(name)
         checked = check(path, page.folder.root)
         more |= {"checked": checked, "version": version_of(checked.text), "sections": [*form(checked)]}
-        more |= {"title": checked.inherited.get("title", ""), "is_part": page_of == "editor.html"}
+        more |= {"title": checked.inherited.get("title", "")}
         more |= {"as_typed": as_typed, "problem": problem, "has_draft": current(path) != path}
         return page.html(page_of, name=name, **more)
 
