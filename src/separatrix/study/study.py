@@ -340,11 +340,16 @@ def _coolant_that_is_known(cooling: Cooling, operation: Operation) -> Faults:
             yield Fault(("operation", name), rule, "Give it, or leave [cooling] out.", "")
 
 
+LEAST_TURNING = 1e-4
+"""Least race friction that turns balls: of less, rounding of the loads is 1e-10 (momentum-wheel at 3e-5)."""
+
+
 @check(Study)
 def _friction_turns_free_balls(kinematics: Kinematics, film: Film) -> Faults:
-    if kinematics.model is KinematicModel.FREE and film.race_friction == 0.0:
+    if kinematics.model is KinematicModel.FREE and film.race_friction < LEAST_TURNING:
+        rule = f'must be >= {LEAST_TURNING:g} for the "free" kinematics'
         cure = "Without friction nothing turns the balls; choose a race control model."
-        yield Fault(("film", "race_friction"), 'must be > 0 for the "free" kinematics', cure)
+        yield Fault(("film", "race_friction"), rule, cure)
 
 
 @check(Study)
