@@ -70,7 +70,7 @@ pitch_diameter = "65 mm" => pitch_diameter = 65 mm :: line 5 ; Put quantities in
 model = "free" => model = free :: line 19 ; Put text in quotes.
 ball_count = 13 => ball_count = 19 :: line 6 ; [bearing] ball_count must be at most 18 ; got 19
 "65 mm" => "10 mm" :: ball_count ; too large for the pitch circle
-race_friction = 0.1 => race_friction = 3e-5 :: [film] race_friction must be >= 0.0001 for the "free" ; race control
+race_friction = 0.1 => race_friction = 3e-5 :: [film] race_friction must be >= 0.0001 ; race control
 "50 mm" => "60 mm" :: [bearing] bore must be smaller ; 53.89 mm
 ball_material = "440C" => ball_material = "404C"
     :: line 11 ; [bearing] ball_material ; Did you mean 440C? ; 52100
