@@ -10,7 +10,7 @@ import pytest
 from separatrix.chain.solution import solve
 from separatrix.study.cautions import beyond_bearings
 from separatrix.study.reading import read_study
-from separatrix.study.study import Operation, PocketShape, Study
+from separatrix.study.study import KinematicModel, Kinematics, Operation, PocketShape, Study
 from separatrix.verbs import restitution
 from separatrix.verbs.verb import NoOptions
 from separatrix.verdict.beyond_models import (
@@ -80,6 +80,14 @@ def test_balls_that_the_inner_race_hardly_touches_skid():
     assert "below the limit of 1 %" in note
     still = Operation(inner_speed=0.0, axial_load=0.1, radial_load=1.0)
     assert notes(replace(SHIPPED, operation=still)) == []
+
+
+def test_inner_race_control_fades_below_the_centrifugal_force():
+    """39 N of each ball on the inner race beside 92 N under 300 N; 444 N beside 80 N under the own load."""
+    inner = replace(SHIPPED, kinematics=Kinematics(model=KinematicModel.INNER_RACE_CONTROL))
+    (note,) = notes(replace(inner, operation=replace(inner.operation, axial_load=300.0)))
+    assert note.startswith("13 of 13 balls press the inner race with less than their centrifugal force")
+    assert notes(inner) == notes(operated(axial_load=300.0)) == []
 
 
 def test_an_overdamped_impact_is_called_so():

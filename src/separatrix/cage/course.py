@@ -108,7 +108,7 @@ class History:
     mean_offset: Metre
     offset_spread: Metre  # standard deviation of the offset at the end
     orbit_speed: RadianPerSecond  # of the centre about the axis in the fixed frame, at the end
-    whirl_frequency: Hertz
+    whirl_frequency: Hertz  # in the judged part, from which a whirl may still grow
     whirl_direction: int  # of the centre's velocity, seen from the balls: 1 forward, -1 backward
     pocket_power: Watt  # that pocket friction feeds into the cage; below 0 it takes from it
     land_power: Watt  # the same of the land

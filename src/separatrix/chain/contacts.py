@@ -289,3 +289,9 @@ def beyond_contacts(
             f"{share:.2g} % of the outer load, below the limit of {limit:g} %. Such balls skid; their speeds "
             f"are computed {taken}."
         )
+    free = found.load_inner < found.centrifugal_force
+    if found.model is KinematicModel.INNER_RACE_CONTROL and free.any():
+        yield (
+            f"{free.sum()} of {free.size} balls press the inner race with less than their centrifugal force: "
+            "it does not control them alone, and part of the control is computed as of the outer race."
+        )
