@@ -7,6 +7,7 @@ the process, which no neighbour on the machine changes: ``report`` [s], or for a
 """
 
 import json
+import math
 from pathlib import Path
 
 import pytest
@@ -80,3 +81,26 @@ def test_what_is_left_of_a_kind_goes_on_at_its_own_pace():
     done, total = work.so_far(1)
     slow, fast = (10.0 + 5.5) / 20.0, (1.0 + 5.5) / 20.0
     assert (done, total - done) == (11.0, pytest.approx(10.0 * slow + 10.0 * fast))  # rounding
+
+
+def test_a_kind_of_which_nothing_was_made_leaves_the_end_open():
+    """A number and a word are two kinds."""
+    work = Work()
+    work.loads.update(dict.fromkeys((1, 2, "slow"), Load(10.0)))
+    work.spend(1, 1.0, 10.0)
+    assert work.so_far(1)[1] == math.inf
+    work.spend("slow", 5.0, 5.0)
+    assert work.so_far(1)[1] < math.inf
+
+
+def test_work_for_runs_that_have_not_ended_counts():
+    """Of 10 s left 10 s under way may be all or little: half of it is left; the end is never passed."""
+    work = Work()
+    work.loads.update(dict.fromkeys((1, 2), Load(10.0)))
+    work.spend(1, 10.0, 10.0)
+    work.finish(1)
+    assert work.so_far(1) == (10.0, 20.0)
+    assert work.so_far(1, 10.0) == (20.0, 25.0)
+    work.spend(2, 10.0, 10.0)
+    work.finish(2)
+    assert work.so_far(1, 1.0) == (21.0, 21.0)

@@ -36,8 +36,8 @@ REDRAWN_EVERY: Second = 0.2
 FIRST_PART = 0.1
 """Share of the work after which the time of all is estimated."""
 
-ENOUGH: Second = 5.0
-"""Work in which nothing is estimated: what is over in ten needs no estimate."""
+ENOUGH: Second = 10.0
+"""Time within which nothing is estimated: what is over by then needs no estimate."""
 
 PATIENCE: Second = 1.6
 """Time that an interrupt waits for the work to end by itself, with what was finished."""

@@ -99,8 +99,11 @@ class Work:
         with self._lock:
             self._finished.add(place)
 
-    def so_far(self, threads: int) -> tuple[Second, Second]:
-        """Work done and all that is expected [s], of these threads; a place keeps one busy, no more."""
+    def so_far(self, threads: int, under_way: Second = 0.0) -> tuple[Second, Second]:
+        """Work done and all that is expected [s], of these threads; a place keeps one busy, no more.
+
+        `under_way` is what was worked for runs that have not ended: of what is left, as much as it can be.
+        """
         with self._lock:
             done = sum(spent for spent, _ in self._spent.values())
             made, took = defaultdict[type, float](float), defaultdict[type, Second](float)
@@ -110,15 +113,17 @@ class Work:
                     whole = load.runs if place in self._finished else UNDER_WAY * min(runs, load.runs)
                     made[type(place)] += load.dear * whole
                     took[type(place)] += spent
-            if not any(took.values()):
-                return done, math.inf
+            if not took or not all(took[type(place)] for place in self.loads.keys() - self._finished):
+                return done, math.inf  # nothing is known of a kind that is left
             pace, left = sum(took.values()) / sum(made.values()), [0.0]
             for place, load in self.loads.items():
                 if place not in self._finished:
                     kind, (_, runs) = type(place), self._spent.get(place, (0.0, 0.0))
                     of_kind = (took[kind] + pace * load.runs) / (made[kind] + load.runs)
                     left.append(of_kind * load.dear * max(load.runs - runs, LEAST_LEFT * load.runs))
-            return done, done + max(sum(left), threads * max(left))
+            rest = max(sum(left), threads * max(left))
+            rest *= rest / (rest + under_way) if rest > 0.0 else 0.0
+            return done + under_way, done + under_way + rest
 
 
 def scattered(places: Iterable[Place]) -> list[Place]:
@@ -301,7 +306,7 @@ class Runner:
             if progress is not None:
                 progress(len(results), len(wanted))
             elif self.progress is not None:
-                self.progress(*work.so_far(self.jobs))
+                self.progress(*work.so_far(self.jobs, self._gathered.under_way if self._gathered else 0.0))
 
         with _noticed(self.stop):
             try:

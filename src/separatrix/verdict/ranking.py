@@ -125,14 +125,14 @@ class _Question:
 
     @property
     def pieces(self) -> list[Piece]:
-        """What is wanted: the longest first, as its runs wait for each other; then verdicts.
+        """What is wanted: the longest first, as its runs wait for each other; then some of each kind.
 
-        So an interrupt leaves some of these.
+        So an interrupt leaves verdicts, and what is left can be estimated.
         """
-        verdicts = [*scattered(self.keys), *scattered(self.beside)]
         cases = scattered(self.drawn.friction) if self.drawn else []
-        own = Knot(self.reference, None)
-        return [*_limits(self, {}), own, *verdicts, *cases, *_knots(self, {})]
+        kinds = (_limits(self, {}), _knots(self, {}), scattered(self.keys), scattered(self.beside), cases)
+        in_turn = itertools.chain.from_iterable(itertools.zip_longest(*kinds))
+        return [Knot(self.reference, None), *(piece for piece in in_turn if piece is not None)]
 
 
 def rank(study: Study, *, runner: Runner | None = None) -> Ranking:

@@ -73,6 +73,13 @@ class Gathered:
         self._turns, self._jobs, self._stop, self._pool = turns, jobs, stop, pool
         self._lock = threading.Lock()
         self._waiting: list[tuple[Piece, Future[Followed]]] = []
+        self._begun: dict[int, Second] = {}  # by thread that follows runs
+
+    @property
+    def under_way(self) -> Second:
+        """Time that threads worked for runs that have not ended."""
+        now = COMPILING.clock()
+        return sum(now - begun for begun in self._begun.copy().values())
 
     def follow(self, pieces: Sequence[Piece]) -> Followed:
         """Evidence of pieces, one after the other, for a thread that has a turn; and their time."""
@@ -114,13 +121,15 @@ class Gathered:
                 count += len(batch[-1][0].states)
             taken = set(map(id, batch))
             self._waiting = [one for one in self._waiting if id(one) not in taken]
-        begun = COMPILING.clock()
+        begun = self._begun[threading.get_ident()] = COMPILING.clock()
         try:
             found = follow_alike(kind, [piece for piece, _ in batch], self._stop)
         except BaseException as error:  # those that wait for these runs must not wait on
             for _, future in batch:
                 future.set_exception(error)
             raise
+        finally:
+            del self._begun[threading.get_ident()]
         at, spent = 0, (COMPILING.clock() - begun) / count
         for piece, future in batch:
             last = at + len(piece.states)
