@@ -3,6 +3,7 @@
 import math
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from commands import refusal, written
 
@@ -28,7 +29,26 @@ radial_clearance = "12 um"
 ball_material = "440C"
 ring_material = "440C"
 """
-MULTIPLIERS = [("6205", 3.5848, 5.4152, 0.39828), ("6203", 3.0530, 4.9469, 0.3817)]
+MULTIPLIERS = [
+    ("6205", 3.5848, 5.4152, 0.39828, 2e-4),  # 0.2656 in is good to 2e-4
+    ("6203", 3.0530, 4.9469, 0.3817, 2e-4),
+    ("6004", 3.578, 5.422, 0.398, 6e-4),  # Timken prints three decimals
+    ("6204", 3.052, 4.948, 0.382, 6e-4),
+    ("6206", 3.568, 5.432, 0.396, 6e-4),
+    ("6210", 4.093, 5.907, 0.409, 6e-4),
+    ("6310", 3.047, 4.953, 0.381, 6e-4),
+]
+RATINGS = {
+    "6804": (4000, 2470, 15.5), "6205": (14000, 7850, 13.9), "6203": (9550, 4800, 13.2),
+    "608": (3300, 1370, 12.4), "6001": (5100, 2370, 13.0), "6004": (9400, 5000, 13.8),
+    "6200": (5100, 2390, 13.2), "6204": (12800, 6600, 13.1), "6206": (19500, 11300, 13.8),
+    "6208": (29100, 17900, 14.0), "6210": (35000, 23200, 14.4), "6305": (20600, 11200, 13.2),
+    "6310": (62000, 38500, 13.2), "7004C": (11100, 6550, 14.0), "7008C": (20600, 15900, 15.4),
+    "7010C": (26000, 21900, 15.7), "7206C": (23000, 14700, 13.9),
+}  # fmt: skip
+"""Cr and C0r in N and f0 in NSK's catalogue; f0 of 608 is that of 6304, of the same ratio of balls."""
+PUBLISHED = ("6804", "6205", "6203", "608")
+"""Bearings whose count and size are published: they are the scale of ISO 281."""
 
 
 @pytest.mark.parametrize("name", LIBRARY.names("bearing"))
@@ -45,14 +65,39 @@ def test_a_bearing_of_the_catalogue_can_be_one(name, tmp_path):
     assert isinstance(bearing.ball_count, int)
 
 
-@pytest.mark.parametrize(("name", "outer", "inner", "cage"), MULTIPLIERS)
-def test_multipliers_that_the_source_prints_follow_from_the_geometry(name, outer, inner, cage):
-    """Case Western Reserve prints sizes and multipliers of fault frequencies: they check count and sizes."""
+def geometry(name):
+    """Count, ball and pitch diameter in mm, cosine of the contact angle."""
     found = {key: one[0].value for key, one in LIBRARY.record("bearing", name).data.items()}
-    share, balls = found["ball_diameter"] / found["pitch_diameter"], found["ball_count"]
-    assert 0.5 * balls * (1.0 - share) == pytest.approx(outer, abs=2e-4)  # 0.2656 in is good to 2e-4
-    assert 0.5 * balls * (1.0 + share) == pytest.approx(inner, abs=2e-4)
-    assert 0.5 * (1.0 - share) == pytest.approx(cage, abs=2e-4)
+    angle = found.get("contact_angle", 0.0)
+    return found["ball_count"], 1e3 * found["ball_diameter"], 1e3 * found["pitch_diameter"], math.cos(angle)
+
+
+@pytest.mark.parametrize(("name", "outer", "inner", "cage", "digits"), MULTIPLIERS)
+def test_multipliers_that_the_source_prints_follow_from_the_geometry(name, outer, inner, cage, digits):
+    """Case Western Reserve and Timken print multipliers of fault frequencies: they check count and sizes."""
+    balls, ball, pitch, _ = geometry(name)
+    assert 0.5 * balls * (1.0 - ball / pitch) == pytest.approx(outer, abs=digits)
+    assert 0.5 * balls * (1.0 + ball / pitch) == pytest.approx(inner, abs=digits)
+    assert 0.5 * (1.0 - ball / pitch) == pytest.approx(cage, abs=digits)
+
+
+def dynamic_factor(name):
+    """Ratio of ball to pitch diameter, and the factor of Cr that ISO 281 makes a function of it alone."""
+    balls, ball, pitch, cosine = geometry(name)
+    return ball * cosine / pitch, RATINGS[name][0] / (balls ** (2 / 3) * ball**1.8 * cosine**0.7)
+
+
+@pytest.mark.parametrize("name", RATINGS)
+def test_load_ratings_follow_from_count_and_size_of_the_balls(name):
+    """C0r by ISO 76 within its digits and those of f0; Cr by ISO 281, scaled by known bearings."""
+    balls, ball, _, cosine = geometry(name)
+    _, static, factor = RATINGS[name]
+    step = 500 if static >= 30000 else 100 if static >= 10000 else 50
+    digits = 0.05 / factor + 0.5 * step / static
+    assert factor * balls * ball**2 * cosine == pytest.approx(static, rel=digits)
+    ratio, dynamic = dynamic_factor(name)
+    scale = np.interp(ratio, *zip(*sorted(map(dynamic_factor, PUBLISHED)), strict=True))
+    assert dynamic == pytest.approx(scale, rel=0.01)  # the next standard ball is 2 % away or misses C0r
 
 
 @pytest.mark.parametrize(("name", "example"), [("218", "ball-218"), ("LE-7", "le7")])
