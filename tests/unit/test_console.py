@@ -147,16 +147,16 @@ def test_nothing_is_estimated_before_a_tenth_nor_of_unknown_work(monkeypatch):
     clock = [0.0]
     monkeypatch.setattr(console.time, "monotonic", lambda: clock[0])
     pace = console.Pace()
-    for now, done, total in ((0.0, 0.0, 1.0), (6.0, 1.0, math.inf), (9.0, 9.0, 100.0)):
+    for now, done, total in ((0.0, 0.0, 1.0), (12.0, 1.0, math.inf), (18.0, 9.0, 100.0)):
         clock[0] = now
         pace(done, total)
         assert pace.left is None
     COMPILING.on_start(None)
     clock[0] += 100.0
     COMPILING.on_end(None)
-    clock[0] += 1.0
+    clock[0] += 2.0
     pace(20.0, 100.0)
-    assert pace.left == pytest.approx(40.0, rel=1e-12)  # a fifth took 10 s
+    assert pace.left == pytest.approx(80.0, rel=1e-12)  # a fifth took 20 s
 
 
 def test_compilation_is_told_once(capsys):
