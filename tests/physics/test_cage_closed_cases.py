@@ -15,13 +15,11 @@ from mobile_balls import impact
 from scipy.integrate import solve_ivp
 from scipy.special import ellipk
 
-from separatrix.cage import MovingCage
+from separatrix import BallTraction, Guidance, MovingCage
 from separatrix.cage.closed_forms import rebound, rebound_damping, returned_share
 from separatrix.cage.numbers import numbers_of
 from separatrix.cage.rows import PIVOT, of
-from separatrix.chain.ball_traction import BallTraction
 from separatrix.chain.impact_restitution import damping_for
-from separatrix.study.study import Guidance
 
 M, R = AT_REST.mass, AT_REST.pitch_radius
 CRYO = BallTraction(mass=6.567e-3, slope=188.0, speed=73.0 / 188.0)

@@ -13,15 +13,13 @@ import numpy as np
 import pytest
 from cages import AT_REST, TURNING, damping_of, follow
 
+from separatrix import BallTraction, Guidance, MotionModel, PocketShape, StabilitySettings
 from separatrix.cage import MovingCage, outcome, rows
 from separatrix.cage.disturbance import Starts, ball_places, random_starts, start_states
 from separatrix.cage.ensemble import Stop, run_rows
 from separatrix.cage.numbers import look_time, numbers_of
 from separatrix.cage.rows import of
-from separatrix.chain.ball_traction import BallTraction
 from separatrix.ground.units import Array
-from separatrix.study.pocket_shape import PocketShape
-from separatrix.study.study import Guidance, MotionModel, StabilitySettings
 
 R, Z, OMEGA = 32.5e-3, 13, 668.9886
 SPACE = {

@@ -7,13 +7,8 @@ import numpy as np
 import pytest
 from cages import AT_REST, TURNING, followed, gripped, linear_roots
 
-from separatrix.cage import (
-    MovingCage,
-    linear_critical_friction,
-    linear_whirl_frequency,
-    numbers,
-    run_ensemble,
-)
+from separatrix import MovingCage, linear_critical_friction, linear_whirl_frequency, run_ensemble
+from separatrix.cage import numbers
 from separatrix.cage.closed_forms import drift_rate_law, whirl_rate
 from separatrix.chain.ball_traction import BallTraction
 from separatrix.study.study import MotionModel, StabilitySettings

@@ -5,14 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from separatrix import KinematicModel, Kinematics, lubrication_curve, read_study, solve
 from separatrix.cage.disturbance import free_leads
 from separatrix.cage.moving_cage import moving_cage, turned_forward
 from separatrix.cage.numbers import waves_of
 from separatrix.chain.contacts import waves_around
-from separatrix.chain.impact_restitution import lubrication_curve
-from separatrix.chain.solution import solve
-from separatrix.study.reading import read_study
-from separatrix.study.study import KinematicModel, Kinematics
 
 SHIPPED = read_study("cryogenic-turbopump")
 CONTROLLED = Kinematics(model=KinematicModel.OUTER_RACE_CONTROL)

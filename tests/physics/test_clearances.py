@@ -7,14 +7,11 @@ import pytest
 from cages import with_distributions
 from scipy.integrate import solve_bvp
 
-from separatrix.cage import moving_cage
+from separatrix import InputError, moving_cage, read_study, solve
 from separatrix.chain.clearances import TurningRing, mean_expansion, running_clearances
-from separatrix.chain.solution import solve
-from separatrix.ground.errors import InputError
 from separatrix.study.ball_bearing import Expansion
 from separatrix.study.distribution import uniform
 from separatrix.study.keys import with_values
-from separatrix.study.reading import read_study
 from separatrix.study.study import ClearanceState, Guidance, Material
 from separatrix.verdict.beyond_models import pocket_of
 from separatrix.verdict.draws import sample

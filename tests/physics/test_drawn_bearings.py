@@ -9,14 +9,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.special import ndtr
 
-from separatrix.cage import RunOutcome, moving_cage, run_ensemble
+from separatrix import InputError, RunOutcome, Verdict, judge, moving_cage, read_study, run_ensemble, solve
 from separatrix.cage.disturbance import settings_for
-from separatrix.chain.solution import solve
 from separatrix.friction.friction_fit import TestedFriction
-from separatrix.ground.errors import InputError
 from separatrix.study.candidates import environment_of
 from separatrix.study.distribution import normal, samples, uniform
-from separatrix.study.reading import read_study
 from separatrix.study.study import Candidate, Friction, RankingQuestion
 from separatrix.verdict.draws import (
     Case,
@@ -26,7 +23,6 @@ from separatrix.verdict.draws import (
     sobol_points,
     uncertain_inputs,
 )
-from separatrix.verdict.judgement import Verdict, judge
 from separatrix.verdict.long_jobs import Runner
 from separatrix.verdict.ranking import rank
 

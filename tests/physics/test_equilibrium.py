@@ -11,14 +11,12 @@ from mobile_balls import RPM, study_of
 from scipy.optimize import root
 from scipy.special import ellipe
 
+from separatrix import BallBearing, ConvergenceError, InputError, KinematicModel, Operation, Race, read_study
 from separatrix.chain.equilibrium import Equilibrium, contact, equilibrium
 from separatrix.chain.grooved_ball import contact_actions, problem, touch
 from separatrix.chain.hertz import contact_ellipse, contact_modulus, race_curvatures
 from separatrix.chain.slip_friction import NODES, chebyshev_nodes, friction_resultants
-from separatrix.ground.errors import ConvergenceError, InputError
 from separatrix.ground.units import Array
-from separatrix.study.reading import read_study
-from separatrix.study.study import BallBearing, KinematicModel, Operation, Race
 
 OUTER, INNER, FREE = (
     KinematicModel.OUTER_RACE_CONTROL,

@@ -6,18 +6,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from separatrix.chain.creep import Creep
+from separatrix import ContactProblem, Creep, creep_of_force, rigid_slip, rolling_contact, solve_each
 from separatrix.chain.exact.grid import cell_counts
 from separatrix.chain.exact.influence import Body, Layer, Solid, pair_images, solid
 from separatrix.chain.exact.pressure import press
-from separatrix.chain.exact.rolling import (
-    ContactProblem,
-    creep_of_force,
-    rigid_slip,
-    rolling_contact,
-    solve,
-    solve_each,
-)
+from separatrix.chain.exact.rolling import solve
 from separatrix.chain.exact.slip import FrictionLaw
 from separatrix.chain.exact.slope import traction_slope
 from separatrix.chain.film_compliance import Profile, worn_band

@@ -8,6 +8,7 @@ from exact_cases import MU, body, kalker
 from scipy.integrate import dblquad
 from scipy.optimize import brentq
 
+from separatrix import ContactProblem, FrictionLaw, InputError, gap_contact, rolling_contact, solid
 from separatrix.chain.exact.grid import elliptic_grid, elliptic_pressure, row_ends
 from separatrix.chain.exact.influence import (
     UNCOUPLED,
@@ -17,13 +18,9 @@ from separatrix.chain.exact.influence import (
     half_space_flexibility,
     influence,
     pair_images,
-    solid,
 )
 from separatrix.chain.exact.pressure import press, pressed_box, pressed_contact
-from separatrix.chain.exact.rolling import ContactProblem, gap_contact, rolling_contact
-from separatrix.chain.exact.slip import FrictionLaw
 from separatrix.chain.hertz import contact_ellipse, ellipse_of_curvatures
-from separatrix.ground.errors import InputError
 
 SOFT = body(0.3, (0.01, 0.46, 0.1))
 PLAIN = ((0, 1.0),)

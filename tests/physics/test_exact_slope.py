@@ -10,9 +10,8 @@ import numpy as np
 import pytest
 from exact_cases import MU, P0, body, contact
 
-from separatrix.chain.creep import Creep
+from separatrix import Body, Creep, FrictionLaw, Layer, contact_ellipse, ellipse_of_axes, solid, worn_band
 from separatrix.chain.exact.grid import elliptic_grid, elliptic_pressure
-from separatrix.chain.exact.influence import Body, Layer, solid
 from separatrix.chain.exact.pressure import film_strain, pressure_slip
 from separatrix.chain.exact.rolling import (
     ContactProblem,
@@ -21,10 +20,7 @@ from separatrix.chain.exact.rolling import (
     rolling_contact,
     solve,
 )
-from separatrix.chain.exact.slip import FrictionLaw
 from separatrix.chain.exact.slope import traction_slope
-from separatrix.chain.film_compliance import worn_band
-from separatrix.chain.hertz import contact_ellipse, ellipse_of_axes
 from separatrix.ground.errors import ConvergenceError
 
 STEEL = solid(200e9, 0.285)

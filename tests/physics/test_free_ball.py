@@ -11,15 +11,13 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from separatrix import BallModel, read_study, solve
 from separatrix.cage import moving_cage, rows
 from separatrix.cage.ball import race_force, slip_field
 from separatrix.cage.motion import ball_rates
 from separatrix.cage.numbers import numbers_of
 from separatrix.cage.rows import LANES, RACE_ROWS
 from separatrix.chain.slip_friction import chebyshev_nodes, friction_resultants
-from separatrix.chain.solution import solve
-from separatrix.study.reading import read_study
-from separatrix.study.study import BallModel
 
 M, RADIUS, ORBIT, SPEED, Q, MU = 2.029805e-3, 3.969e-3, 19.25e-3, 50_000 * math.pi / 30.0, 600.0, 0.1
 V, J = SPEED * (ORBIT - RADIUS), 0.4 * M * RADIUS**2

@@ -8,16 +8,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from separatrix.chain.hertz import contact_ellipse
+from separatrix import InputError, contact_ellipse, read_study
 from separatrix.chain.impact_restitution import hertz_coefficient
 from separatrix.chain.pocket_friction import contact_radius, sliding_speed
 from separatrix.friction.friction_file import FrictionFile, FrictionTest, Place, friction_text
 from separatrix.friction.friction_fit import TestedFriction, fit_friction
 from separatrix.friction.friction_law import StatedFriction
 from separatrix.friction.scatter import LinearModel, conditional
-from separatrix.ground.errors import InputError
 from separatrix.ground.reader import read_text
-from separatrix.study.reading import read_study
 
 ENVIRONMENT = "liquid nitrogen, 440C"
 

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from scipy.integrate import quad
 from scipy.special import elliprd, elliprf
 
+from separatrix import InputError, Material, Race
 from separatrix.chain.creep import Creep, contact_creep, deformed_radius
 from separatrix.chain.hertz import (
     contact_ellipse,
@@ -21,8 +22,6 @@ from separatrix.chain.hertz import (
     elliptic_integrals,
     race_curvatures,
 )
-from separatrix.ground.errors import InputError
-from separatrix.study.study import Material, Race
 
 NITRIDE = Material(name="nitride", elastic_modulus=310e9, poisson_ratio=0.27, density=3210.0)
 ROUNDING = 1e-12  # some thousand operations in double precision

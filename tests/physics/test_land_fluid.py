@@ -10,8 +10,7 @@ import numpy as np
 import pytest
 from scipy.linalg import solve_banded
 
-from separatrix import read_study, solve
-from separatrix.cage.moving_cage import moving_cage
+from separatrix import moving_cage, read_study, solve
 from separatrix.chain.land_fluid import annulus_mass, decay_rate, land_fluid
 from separatrix.verdict.effects import MOVED, WIDE, effects_on
 

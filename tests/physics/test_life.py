@@ -9,10 +9,10 @@ from mobile_balls import study_of
 from scipy.special import ndtr, ndtri
 
 import separatrix
+from separatrix import LifeTable, solve
 from separatrix.chain import slip_work
 from separatrix.chain.contacts import bearing_state
 from separatrix.chain.slip_work import TrackWork, track_work
-from separatrix.chain.solution import solve
 from separatrix.study.study import Film, KinematicModel, Race, WearRates
 from separatrix.verdict.crossing import PLACES, Count, steepness
 from separatrix.verdict.life_table import Node, _accelerated, _bearing_wear, _drawn, _tests, life, wear_rates
@@ -20,7 +20,6 @@ from separatrix.verdict.wear_life import (
     THICKEST,
     BearingWear,
     Land,
-    LifeTable,
     Phase,
     Worn,
     causes,

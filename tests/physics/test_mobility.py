@@ -14,10 +14,9 @@ from mobile_balls import NAMES, held, impact, modes_of, records, study_of
 from scipy.interpolate import CubicSpline
 from scipy.optimize import root
 
+from separatrix import BallTraction, InputError, SlipLaw, solve
 from separatrix.chain import contacts
 from separatrix.chain.ball_mobility import (
-    BallTraction,
-    SlipLaw,
     balanced,
     fitted_law,
     groove,
@@ -32,8 +31,6 @@ from separatrix.chain.contacts import Rolling, race_tracks
 from separatrix.chain.grooved_ball import slip_coefficients, touch
 from separatrix.chain.race_traction import exact_slope
 from separatrix.chain.slip_friction import friction_resultants
-from separatrix.chain.solution import solve
-from separatrix.ground.errors import InputError
 from separatrix.ground.units import Array
 from separatrix.study.study import KinematicModel, TractionModel, TractionSettings, Wear, Worn
 

@@ -9,10 +9,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import separatrix
+from separatrix import Arrangement, BallBearing, InputError, KinematicModel, Operation, PreloadKind
 from separatrix.chain.equilibrium import equilibrium
 from separatrix.chain.preloaded_pair import FAINT, GAPPED, PairLoads, pair_loads, with_axial_load
-from separatrix.ground.errors import InputError
-from separatrix.study.study import Arrangement, BallBearing, KinematicModel, Operation, PreloadKind
 
 FREE, FRICTION = KinematicModel.FREE, 0.1
 PRELOAD = 200.0

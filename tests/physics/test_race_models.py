@@ -6,6 +6,7 @@ from functools import cache
 import pytest
 from cages import BEARING
 
+from separatrix import InputError, solve
 from separatrix.chain.contacts import race_tracks
 from separatrix.chain.exact.slope import traction_slope
 from separatrix.chain.race_traction import (
@@ -17,8 +18,6 @@ from separatrix.chain.race_traction import (
     film_strain,
     pressure_slip,
 )
-from separatrix.chain.solution import solve
-from separatrix.ground.errors import InputError
 from separatrix.study.study import (
     CageDesign,
     ContactPressure,

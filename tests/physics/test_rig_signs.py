@@ -7,9 +7,8 @@ import numpy as np
 import pytest
 
 import separatrix
+from separatrix import RunOutcome, solve
 from separatrix.cage import moving_cage, simulate
-from separatrix.cage.outcome import RunOutcome
-from separatrix.chain.solution import solve
 from separatrix.verdict.rig_signs import SLOWER, heard, loudest, rig_signs, slower
 
 WHEEL = solve(separatrix.read_study("momentum-wheel"))

@@ -8,12 +8,11 @@ import numpy as np
 import pytest
 
 import separatrix
+from separatrix import Runner, moving_cage
 from separatrix.cage.disturbance import settings_for
-from separatrix.cage.moving_cage import moving_cage
 from separatrix.study.study import BallModel, CageModel, MotionModel, PocketShape, StabilitySettings
 from separatrix.verdict.beyond_models import Pocket
 from separatrix.verdict.crossing import Count, Response, Side
-from separatrix.verdict.long_jobs import Runner
 from separatrix.verdict.ranking import Knot, Limit, _knots, _limits
 from separatrix.verdict.safety_factor import (
     CageLimit,

@@ -11,19 +11,12 @@ import numpy as np
 import pytest
 from cages import SMALL as CAGE
 
+from separatrix import Runner, critical_friction, restitution_threshold, stability_curve, wilson_interval
 from separatrix.cage import linear_critical_friction, run_ensemble
 from separatrix.cage.closed_forms import drift_rate_law
 from separatrix.study.study import Guidance, StabilitySettings
 from separatrix.verdict.crossing import cage_at
-from separatrix.verdict.judgement import wilson_interval
-from separatrix.verdict.long_jobs import Runner
-from separatrix.verdict.stability_curve import (
-    critical_friction,
-    curve_of_points,
-    restitution_threshold,
-    stability_curve,
-    threshold_factors,
-)
+from separatrix.verdict.stability_curve import curve_of_points, threshold_factors
 
 SETTINGS = StabilitySettings(kicks=(0.5,), reference_kick=0.5, runs=32, duration=0.1, seed=3)
 

@@ -8,11 +8,10 @@ import pytest
 from cages import ON_A_LAND
 from scipy.optimize import brentq
 
-from separatrix import read_study
+from separatrix import KinematicModel, StabilitySettings, read_study
 from separatrix.cage.course import follow_start
 from separatrix.cage.disturbance import Starts, random_starts
 from separatrix.chain.equilibrium import equilibrium, orbit_by_diameter
-from separatrix.study.study import KinematicModel, StabilitySettings
 
 STUDY = read_study("cryogenic-turbopump")
 SLOWER = -2e4

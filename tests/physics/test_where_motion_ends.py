@@ -6,15 +6,12 @@ from functools import lru_cache
 import numpy as np
 import pytest
 
+from separatrix import Judgement, StabilitySettings, Verdict, judge, read_study, solve
 from separatrix.cage import Cause, Ensemble, MovingCage, RunOutcome, moving_cage, run_ensemble
 from separatrix.cage.closed_forms import drive_energy
 from separatrix.cage.outcome import LIMITS, end_of_motion
 from separatrix.cage.rows import LOOK_COLUMNS, of
-from separatrix.chain.solution import solve
-from separatrix.study.reading import read_study
-from separatrix.study.study import StabilitySettings
 from separatrix.verdict.crossing import cage_at
-from separatrix.verdict.judgement import Judgement, Verdict, judge
 from separatrix.verdict.reasons import CageMotion, largest_room
 
 RUNS, DURATION = 8, 0.1

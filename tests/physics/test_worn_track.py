@@ -6,10 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from test_exact_slope import INNER, OUTER
 
-from separatrix.chain.creep import Creep
+from separatrix import Creep, InputError, shear_field, traction_curve, traction_slope
 from separatrix.chain.film_compliance import Profile, film_compliance, track_of, worn_band
-from separatrix.chain.traction_curve import shear_field, traction_curve, traction_slope
-from separatrix.ground.errors import InputError
 from separatrix.study.study import Film, Material, Race, Wear, Worn
 
 SOFT = Material(name="soft film", elastic_modulus=1.5e9, poisson_ratio=0.4)

@@ -10,9 +10,8 @@ from cages import STEEL
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from separatrix import BallBearing, ConvergenceError, InputError, KinematicModel, Material, Operation
 from separatrix.chain.equilibrium import Equilibrium, equilibrium
-from separatrix.ground.errors import ConvergenceError, InputError
-from separatrix.study.study import BallBearing, KinematicModel, Material, Operation
 
 bearings = st.builds(
     BallBearing,

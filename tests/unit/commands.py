@@ -13,14 +13,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from separatrix import InputError, read_study
 from separatrix.friction.friction_file import FrictionFile, FrictionTest
 from separatrix.friction.logs.column_map import ColumnMap
 from separatrix.front import main
 from separatrix.front.page.worker import work
 from separatrix.ground import toml
-from separatrix.ground.errors import InputError
 from separatrix.ground.reader import Document, read_document, read_text
-from separatrix.study.reading import read_study
 from separatrix.verdict.ledger import NAME
 
 COMMAND = [sys.executable, "-m", "separatrix"]

@@ -10,14 +10,12 @@ import pytest
 from commands import SMALL, root_of
 from fastapi.testclient import TestClient
 
+from separatrix import InputError, Study, shipped_studies, template
 from separatrix.front.page import editing as draft
 from separatrix.front.page.folder import Folder
 from separatrix.front.page.server import application
 from separatrix.front.page.worker import Job, answered
-from separatrix.ground.errors import InputError
 from separatrix.ground.schema import is_record, keys_of
-from separatrix.study.study import Study, shipped_studies
-from separatrix.study.template import template
 from separatrix.verdict.ledger import NAME
 
 COMMENTED = """# a study

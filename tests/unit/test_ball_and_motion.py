@@ -9,10 +9,8 @@ import pytest
 from cages import AT_REST
 from commands import refused
 
-from separatrix.chain.ball_traction import BallTraction
-from separatrix.ground.errors import InputError
+from separatrix import BallTraction, InputError, read_study
 from separatrix.study.cage_body import cage_inertia, ring_body
-from separatrix.study.reading import read_study
 from separatrix.study.study import (
     Guidance,
     MotionModel,

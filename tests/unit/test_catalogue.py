@@ -7,10 +7,9 @@ import pytest
 from commands import refusal, written
 
 import separatrix
-from separatrix.ground.errors import InputError
+from separatrix import InputError, resolved
 from separatrix.study.library import Library
 from separatrix.study.reading import read_study, study_again
-from separatrix.study.sources import resolved
 from separatrix.study.study import WearRates
 from separatrix.study.wear_rates import library_rate
 from separatrix.verdict.life_table import wear_rates

@@ -4,12 +4,10 @@ from dataclasses import replace
 
 import pytest
 
+from separatrix import InputError, read_study, solve
 from separatrix.cage import MovingCage, moving_cage, settings_for
 from separatrix.chain.impact_restitution import ball_pocket_stiffness, hertz_coefficient
-from separatrix.chain.solution import solve
-from separatrix.ground.errors import InputError
 from separatrix.study.candidates import other_than_candidates, require_friction, required_environment
-from separatrix.study.reading import read_study
 from separatrix.study.study import (
     Candidate,
     Film,

@@ -12,9 +12,8 @@ from commands import refused
 from test_study_refusals import VALID
 
 import separatrix
-from separatrix.cage import RunOutcome
+from separatrix import InputError, RunOutcome
 from separatrix.front import cli, main
-from separatrix.ground.errors import InputError
 from separatrix.ground.files import size_of
 
 pytestmark = pytest.mark.usefixtures("elsewhere")

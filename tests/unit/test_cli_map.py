@@ -7,10 +7,8 @@ from pathlib import Path
 import pytest
 from commands import SMALL, document, refused
 
-from separatrix.chain.solution import solve
+from separatrix import InputError, read_study, solve
 from separatrix.front import main
-from separatrix.ground.errors import InputError
-from separatrix.study.reading import read_study
 from separatrix.verdict.parameter_axes import read_axis
 
 pytestmark = pytest.mark.usefixtures("undrawn")

@@ -7,10 +7,9 @@ import numpy as np
 import pytest
 from cages import ON_A_LAND
 
-from separatrix.cage import Cause, History, MovingCage, RunOutcome, analyse
+from separatrix import Cause, History, MotionModel, MovingCage, RunOutcome, analyse
 from separatrix.cage.course import SOURCES, ball_set_speed, phase_of
 from separatrix.cage.numbers import look_time
-from separatrix.study.study import MotionModel
 
 OMEGA, BALLS, RADIUS = 600.0, 5, 0.03
 TIME = np.linspace(0.0, 0.2, 8001)

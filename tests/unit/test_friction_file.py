@@ -5,13 +5,10 @@ import json
 import pytest
 from commands import changed, document, read_friction, refusal, refusal_line, rows_of, written
 
+from separatrix import Operation, read_study, resolved, solve
 from separatrix.chain.pocket_friction import PocketConditions, friction_in_pocket
-from separatrix.chain.solution import solve
 from separatrix.friction.friction_fit import TestedFriction
 from separatrix.front import main
-from separatrix.study.reading import read_study
-from separatrix.study.sources import resolved
-from separatrix.study.study import Operation
 
 GOOD = """\
 [[test]]

@@ -7,11 +7,10 @@ from importlib.resources import files
 import pytest
 from commands import changed, refusal, refusal_line, refused, rows_of, written
 
+from separatrix import read_study, resolved
 from separatrix.ground.schema import keys_of
 from separatrix.study import library
 from separatrix.study.library import Datum, Library, choose, contradictions, with_files
-from separatrix.study.reading import read_study
-from separatrix.study.sources import resolved
 
 DATA = files("separatrix.study.library") / "data"
 LIBRARY = Library()

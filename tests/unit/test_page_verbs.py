@@ -6,14 +6,12 @@ import pytest
 from commands import log
 from test_reference_tables import missing
 
-from separatrix.chain.impact_restitution import restitution_factor
+from separatrix import InputError, read_study, restitution_factor, wilson_interval
 from separatrix.ground.document import Part, part_of
-from separatrix.ground.errors import InputError
 from separatrix.ground.quantity import Estimate
 from separatrix.present.blocks import Level, Picture
 from separatrix.present.figure import Across, Trace
 from separatrix.present.text import text
-from separatrix.study.reading import read_study
 from separatrix.verbs import bearing, compare, computed, tribometer, verb_named
 from separatrix.verbs.answer_files import document, read_answer, read_answers, read_folder
 from separatrix.verbs.compare import RESULTS, difference_interval, differing, results
@@ -23,7 +21,6 @@ from separatrix.verbs.parts.bearing_drawing import CAGE, bearing_picture, sectio
 from separatrix.verbs.parts.verdict_blocks import deciding, linear_law, pocket_friction, verdict_sentences
 from separatrix.verbs.rank import by_paper
 from separatrix.verbs.sweep import SHOWN, case_table, envelope_figure, worst_words
-from separatrix.verdict.judgement import wilson_interval
 
 SHIPPED = "cryogenic-turbopump"
 

@@ -11,9 +11,9 @@ from matplotlib import image
 from test_reference_tables import missing
 
 import separatrix
+from separatrix import InputError, Interrupted, read_study
 from separatrix.front import api, main
 from separatrix.ground.document import part_of
-from separatrix.ground.errors import InputError
 from separatrix.ground.quantity import Estimate
 from separatrix.present import html, quantity_text
 from separatrix.present.blocks import Facts, Heading, Level, Note, Picture, Table, View, spans
@@ -22,11 +22,9 @@ from separatrix.present.figure import Axis, Figure, Panel, Trace
 from separatrix.present.pdf import pdf
 from separatrix.present.spreadsheet import spreadsheet
 from separatrix.present.text import text
-from separatrix.study.reading import read_study
 from separatrix.verbs import VERBS, verb_named
 from separatrix.verbs.answer_files import page_of_document, refusing_damage
 from separatrix.verdict.ledger import NAME
-from separatrix.verdict.long_jobs import Interrupted
 
 SMALL = """
 extends = "momentum-wheel"

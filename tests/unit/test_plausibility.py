@@ -7,10 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from separatrix.chain.solution import solve
+from separatrix import KinematicModel, Kinematics, Operation, PocketShape, Study, read_study, solve
 from separatrix.study.cautions import beyond_bearings
-from separatrix.study.reading import read_study
-from separatrix.study.study import KinematicModel, Kinematics, Operation, PocketShape, Study
 from separatrix.verbs import restitution
 from separatrix.verbs.verb import NoOptions
 from separatrix.verdict.beyond_models import (

@@ -7,18 +7,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from separatrix.cage import moving_cage
+from separatrix import Candidate, Friction, Material, RankingQuestion, StabilitySettings, moving_cage, solve
 from separatrix.chain.pocket_friction import with_scatter
-from separatrix.chain.solution import solve
 from separatrix.study.reading import read_study
-from separatrix.study.study import (
-    CageModel,
-    Candidate,
-    Friction,
-    Material,
-    RankingQuestion,
-    StabilitySettings,
-)
+from separatrix.study.study import CageModel
 from separatrix.verdict.beyond_models import Pocket
 from separatrix.verdict.judgement import Judgement, Verdict, judge, transmitted_force
 from separatrix.verdict.ledger import NAME, Ledger

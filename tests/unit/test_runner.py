@@ -18,18 +18,14 @@ import numpy as np
 import pytest
 from commands import COMMAND, pieces
 
+from separatrix import InputError, MotionModel, PocketShape, read_study, solve, stability_curve
 from separatrix.cage import Ensemble, moving_cage, run_ensemble, settings_for
 from separatrix.cage.ensemble import Runs, follow_alike
-from separatrix.chain.solution import solve
 from separatrix.front import main
-from separatrix.ground.errors import InputError
-from separatrix.study.reading import read_study
-from separatrix.study.study import MotionModel, PocketShape
 from separatrix.verdict import cluster as clusters
 from separatrix.verdict.cluster import cluster
 from separatrix.verdict.ledger import NAME, Ledger, key_of
 from separatrix.verdict.long_jobs import PART, Interrupted, Load, Runner, Work, joined, scattered
-from separatrix.verdict.stability_curve import stability_curve
 
 WHEEL = read_study("momentum-wheel")
 CAGE = moving_cage(solve(WHEEL), 0.2)

@@ -7,10 +7,9 @@ from itertools import accumulate
 import numpy as np
 import pytest
 
+from separatrix import Runner, critical_friction, read_study, restitution_threshold, solve
 from separatrix.cage import Cause, RunOutcome, moving_cage, run_ensemble
 from separatrix.chain.impact_restitution import damping_ratio, restitution_factor
-from separatrix.chain.solution import solve
-from separatrix.study.reading import read_study
 from separatrix.study.study import BallModel, StabilitySettings
 from separatrix.verdict import long_jobs as runner
 from separatrix.verdict import stability_curve
@@ -24,14 +23,11 @@ from separatrix.verdict.crossing import (
     cell_of,
     responses,
 )
-from separatrix.verdict.long_jobs import Runner
 from separatrix.verdict.stability_curve import (
     FACTORS,
     CriticalFriction,
-    critical_friction,
     own_restitution_factor,
     own_threshold,
-    restitution_threshold,
 )
 
 SHIPPED = solve(read_study("cryogenic-turbopump"))

@@ -9,15 +9,11 @@ import pytest
 from commands import written
 from rich_studies import PLANE, SPACE
 
+from separatrix import Arrangement, InputError, Interrupted, MotionModel, Runner, read_study, solve
 from separatrix.cage import RunOutcome, moving_cage, run_ensemble
-from separatrix.chain.solution import solve
-from separatrix.ground.errors import InputError
-from separatrix.study.reading import read_study
-from separatrix.study.study import Arrangement, MotionModel
 from separatrix.verdict.crossing import cage_at
 from separatrix.verdict.judgement import is_calm, judge
 from separatrix.verdict.ledger import NAME, Ledger
-from separatrix.verdict.long_jobs import Interrupted, Runner
 from separatrix.verdict.parameter_axes import MapAxis, parameters, value_in, varied
 from separatrix.verdict.stability_map import (
     AGREEING,

@@ -11,11 +11,9 @@ from cages import BEARING
 from commands import written
 from test_study_refusals import VALID
 
-from separatrix.ground.errors import InputError
+from separatrix import InputError, read_study, resolved, template
 from separatrix.ground.units import UNITS
 from separatrix.study.keys import with_values
-from separatrix.study.reading import read_study
-from separatrix.study.sources import resolved
 from separatrix.study.study import (
     ORDER,
     Film,
@@ -26,7 +24,6 @@ from separatrix.study.study import (
     Worn,
     shipped_studies,
 )
-from separatrix.study.template import template
 from separatrix.verdict.parameter_axes import value_in, varied
 
 BASE = VALID.partition("[stability]")[0].replace('[kinematics]\nmodel = "free"\n\n', "")

@@ -5,9 +5,8 @@ import math
 import pytest
 from commands import refusal_line, rows_of, written
 
+from separatrix import CageDesign, PocketShape, read_study
 from separatrix.study.pocket_shape import half_play, tilt
-from separatrix.study.reading import read_study
-from separatrix.study.study import CageDesign, PocketShape
 from separatrix.verbs.check import _cage as checked
 
 EVEN = ", ".join(f'"{360 / 13 * j:.6f} deg"' for j in range(13))

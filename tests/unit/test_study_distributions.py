@@ -11,7 +11,7 @@ from commands import refusal_line, refused, rows_of, written
 from scipy import stats
 from scipy.stats import lognorm
 
-from separatrix.ground.errors import InputError
+from separatrix import InputError, read_study, resolved
 from separatrix.study.distribution import (
     CUT,
     log_normal,
@@ -21,8 +21,6 @@ from separatrix.study.distribution import (
     uniform,
 )
 from separatrix.study.keys import study_numbers, value_of, with_values
-from separatrix.study.reading import read_study
-from separatrix.study.sources import resolved
 from separatrix.verdict.draws import sample, uncertain_inputs
 from separatrix.verdict.ranking_records import measured
 

@@ -3,9 +3,8 @@
 import pytest
 from commands import changed, refusal, rows_of, written
 
-from separatrix.ground.errors import InputError
+from separatrix import InputError, read_study
 from separatrix.ground.toml import parsed
-from separatrix.study.reading import read_study
 
 VALID = """\
 title = "A valid study"

@@ -7,14 +7,10 @@ import openpyxl
 import pytest
 from commands import document, refused
 
-from separatrix.cage import moving_cage
-from separatrix.chain.solution import solve
+from separatrix import InputError, Runner, moving_cage, read_study, solve
 from separatrix.front import main
-from separatrix.ground.errors import InputError
-from separatrix.study.reading import read_study
 from separatrix.study.study import CageModel
 from separatrix.verdict.judgement import judge, transmitted_force
-from separatrix.verdict.long_jobs import Runner
 from separatrix.verdict.swept_cases import MOST_CASES, sweep
 
 STUDY = read_study("momentum-wheel")

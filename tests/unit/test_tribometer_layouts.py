@@ -9,12 +9,11 @@ import openpyxl
 import pytest
 from commands import column_map, document, refused, written
 
+from separatrix import InputError, reduce_log
 from separatrix.friction.logs import UnmappedError, read_column_map, read_log
 from separatrix.friction.logs.log import seconds
 from separatrix.friction.logs.tables import is_clock, is_number
-from separatrix.friction.reduction import reduce_log
 from separatrix.front import main
-from separatrix.ground.errors import InputError
 
 ROWS = 240
 RNG = np.random.default_rng(6)

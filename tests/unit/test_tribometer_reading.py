@@ -11,11 +11,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from raw_logs import as_written
 
-from separatrix.friction.logs import read_log
+from separatrix import InputError, read_log
 from separatrix.friction.logs.column_map import ColumnMap
 from separatrix.friction.logs.log import RawLog
 from separatrix.friction.logs.names import ALIASES, MEANINGS, NAMES, ranks, scale_of
-from separatrix.ground.errors import InputError
 from separatrix.ground.units import UNITS
 
 ROWS = 60

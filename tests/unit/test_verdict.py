@@ -12,10 +12,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import stats
 
-from separatrix.cage import Cause, Ensemble, RunOutcome
+from separatrix import BallModel, Cause, Ensemble, Guidance, MotionModel, PocketShape, RunOutcome
 from separatrix.cage.closed_forms import drive_energy
 from separatrix.chain.ball_traction import BallTraction, FreeBall, SlipField
-from separatrix.study.study import BallModel, Guidance, MotionModel, PocketShape
 from separatrix.verdict import judgement
 from separatrix.verdict.judgement import ENDS, KickCount, Verdict, judge, wilson_interval
 from separatrix.verdict.ranking_records import meet, ranks
