@@ -13,13 +13,7 @@ from exact_cases import MU, P0, body, contact
 from separatrix import Body, Creep, FrictionLaw, Layer, contact_ellipse, ellipse_of_axes, solid, worn_band
 from separatrix.chain.exact.grid import elliptic_grid, elliptic_pressure
 from separatrix.chain.exact.pressure import film_strain, pressure_slip
-from separatrix.chain.exact.rolling import (
-    ContactProblem,
-    creep_of_force,
-    rigid_slip,
-    rolling_contact,
-    solve,
-)
+from separatrix.chain.exact.rolling import ContactProblem, creep_of_force, rigid_slip, rolling_contact, solve
 from separatrix.chain.exact.slope import traction_slope
 from separatrix.ground.errors import ConvergenceError
 

@@ -11,12 +11,7 @@ from commands import refused
 
 from separatrix import BallTraction, InputError, read_study
 from separatrix.study.cage_body import cage_inertia, ring_body
-from separatrix.study.study import (
-    Guidance,
-    MotionModel,
-    PocketShape,
-    StabilitySettings,
-)
+from separatrix.study.study import Guidance, MotionModel, PocketShape, StabilitySettings
 
 QUICK = StabilitySettings(kicks=(0.5,), runs=8, duration=0.02, restitution_factors=(0.3, 0.6), seed=1)
 SHAPE = {"inner_diameter": 0.058, "outer_diameter": 0.072, "width": 0.014}

@@ -13,14 +13,7 @@ import pytest
 
 import separatrix
 from separatrix.ground import compiled
-from separatrix.ground.compiled import (
-    TARGET,
-    UNUSED,
-    VERSIONS,
-    cache_folder,
-    shipped_folder,
-    source_stamp,
-)
+from separatrix.ground.compiled import TARGET, UNUSED, VERSIONS, cache_folder, shipped_folder, source_stamp
 
 PACKAGE = Path(separatrix.__file__).parent
 ROOT = PACKAGE.parents[1]

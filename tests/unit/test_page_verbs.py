@@ -456,7 +456,7 @@ def test_what_is_decided_by_comes_first():
 
     found = compared_answers(ranked("STABLE", 2.0, 3.0), ranked("UNSTABLE", 0.5, 0.1), names=("a", "b"))
     assert [(row["place"], row["name"]) for row in found["rows"]] == [
-        *(("A", "verdict"), ("F / A", "verdict"), ("A", "safety_factor"), ("F / A", "safety_factor")),
+        *(("A", "verdict"), ("F / A", "verdict"), ("A", "safety_factor"), ("F / A", "safety_factor"))
     ]
     assert "counting noise: verdict (2)." in text(compare.page(part_of(json.loads(json.dumps(found)))))
 

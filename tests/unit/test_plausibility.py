@@ -11,12 +11,7 @@ from separatrix import KinematicModel, Kinematics, Operation, PocketShape, Study
 from separatrix.study.cautions import beyond_bearings
 from separatrix.verbs import restitution
 from separatrix.verbs.verb import NoOptions
-from separatrix.verdict.beyond_models import (
-    Moved,
-    bending_frequency,
-    beyond_motion,
-    pocket_pressure,
-)
+from separatrix.verdict.beyond_models import Moved, bending_frequency, beyond_motion, pocket_pressure
 
 SHIPPED = read_study("cryogenic-turbopump", "paper")
 CAGE = SHIPPED.cage

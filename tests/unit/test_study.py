@@ -14,16 +14,7 @@ from test_study_refusals import VALID
 from separatrix import InputError, read_study, resolved, template
 from separatrix.ground.units import UNITS
 from separatrix.study.keys import with_values
-from separatrix.study.study import (
-    ORDER,
-    Film,
-    KinematicModel,
-    Operation,
-    Study,
-    Wear,
-    Worn,
-    shipped_studies,
-)
+from separatrix.study.study import ORDER, Film, KinematicModel, Operation, Study, Wear, Worn, shipped_studies
 from separatrix.verdict.parameter_axes import value_in, varied
 
 BASE = VALID.partition("[stability]")[0].replace('[kinematics]\nmodel = "free"\n\n', "")
@@ -97,11 +88,7 @@ IN_SPACE = (
 
 def test_every_line_that_is_off_in_the_template_can_be_switched_on(read):
     """The commented alternatives are right too: each key is taken, alone, in place of what it excludes."""
-    excluded = {
-        "radial_clearance": "contact_angle",
-        "tilt": "moment",
-        "elastic_modulus": "material",
-    }
+    excluded = {"radial_clearance": "contact_angle", "tilt": "moment", "elastic_modulus": "material"}
     beside = {
         "elastic_modulus": "poisson_ratio = 0.38",
         "ramp_start": 'ramp_time = "50 ms"',
@@ -143,11 +130,7 @@ OPENED = pytest.approx(math.acos(1 - 20e-6 / (2 * 0.04 * 0.0111125)), rel=1e-12)
 READ = [
     ('title = "A valid study"\n', "", lambda s: s.title == "case"),
     (ANGLE, 'radial_clearance = "0 um"', lambda s: s.bearing.free_angle == 0.0),
-    (
-        ANGLE,
-        'radial_clearance = "20 um"',
-        lambda s: s.bearing.free_angle == OPENED,
-    ),
+    (ANGLE, 'radial_clearance = "20 um"', lambda s: s.bearing.free_angle == OPENED),
     (FILM, 'elastic_modulus = "2 GPa"\npoisson_ratio = 0.4\n', lambda s: s.film.body.poisson_ratio == 0.4),
     (FILM + 'thickness = "0.5 um"\n', "", lambda s: s.film == Film(race_friction=0.1)),
     (
