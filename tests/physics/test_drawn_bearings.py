@@ -129,7 +129,6 @@ def test_rank_shows_both_verdicts_only_where_inputs_are_uncertain():
 
 # Quasi-random draws: what holds whatever the study, the number of samples and the seed.
 
-
 BASE = read_study("cryogenic-turbopump")
 LAWS = {
     "film.thickness": normal(mean=5e-7, standard_deviation=1e-7),

@@ -25,7 +25,6 @@ OUTER, INNER, FREE = (
 )
 BALANCED = 2e-6  # the ring stops at 1e-6 of its load, the balls far below
 
-
 LE7 = read_study("le7").bearing
 """A turbopump's bearing."""
 
@@ -399,7 +398,6 @@ def test_much_friction_spins_least_at_the_better_held_race():
 
 
 # What the equilibrium refuses, and what it says when it cannot balance.
-
 
 STEEL = dataclasses.replace(STEEL_218, elastic_modulus=206e9)
 BEARING = dataclasses.replace(TURBOPUMP, outer_conformity=0.52, ball_material=STEEL, ring_material=STEEL)

@@ -267,7 +267,6 @@ def test_any_number_of_equal_tests_has_a_fit(groups):
 
 # What must hold of friction files and fits, whatever the tests.
 
-
 FRICTION = st.floats(0.01, 1.0)
 POSITIVE = st.floats(1e-3, 100.0)
 TEXT = st.text(st.characters(codec="utf-8"), min_size=1, max_size=20).filter(

@@ -16,7 +16,6 @@ from separatrix.study.study import Guidance, MotionModel, PocketShape, Stability
 SPIN = {"ball_spin": (-4083.2, 1942.6, -3.5), "ball_diameter": 11.1125e-3}
 SPACE = SPIN | {"motion": MotionModel.SPACE, "groove_damping": 766.0, "groove_stiffness": 5.05e6}
 
-
 run = partial(followed, direction=0.3)
 
 

@@ -135,7 +135,6 @@ def test_what_makes_no_impact_is_refused(eta, damping):
 
 # The restitution factor for inputs nobody thought of.
 
-
 positive = st.floats(1e-3, 1e5)
 
 

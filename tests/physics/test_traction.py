@@ -194,7 +194,6 @@ def test_the_field_adds_up_to_the_curve():
 
 # Traction for contacts nobody thought of: trends, symmetries, scaling, Coulomb's law.
 
-
 XI = 2.0 * P0 / E  # saturation creep at friction 1
 NOISE = 6e-4  # two slopes, each with an interpolation error of 3e-4
 
@@ -298,7 +297,6 @@ def test_coulombs_law_holds_on_every_element(level, lam, tilt, bulge):
 
 
 # What traction refuses, warns of and returns.
-
 
 CREEP = Creep(spin=5.0, curvature=-2e4)
 GOOD = {"race_friction": 0.1, "film_compliance": 1e-15}

@@ -25,7 +25,6 @@ from separatrix.verdict.ledger import NAME
 COMMAND = [sys.executable, "-m", "separatrix"]
 """The real command, as a process is started with."""
 
-
 SMALL = """
 extends = "cryogenic-turbopump"
 title = "A small ensemble"

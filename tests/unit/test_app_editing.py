@@ -242,7 +242,6 @@ def test_a_wrong_address_is_answered_with_a_page(page, method, place, status, wo
 
 # A link out of the page's folder is answered like a missing file; nothing is written through it.
 
-
 NEIGHBOUR = "the study of a neighbour"
 ANSWER = {
     "title": NEIGHBOUR,

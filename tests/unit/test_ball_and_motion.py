@@ -112,7 +112,6 @@ def test_forces_of_a_law():
 
 # What a moving cage refuses, by the words of the message; rules of a `CageDesign` too: test_study_cage.
 
-
 CAGE = replace(AT_REST, cage_speed=670.0, guidance=Guidance.OUTER, land_clearance=1e-3)
 SLOT = {"pocket_shape": PocketShape.ELONGATED}
 
@@ -125,7 +124,6 @@ NOT_NEGATIVE = (
     *("ball_cage_friction", "land_friction", "unbalance", "gravity", "ball_diameter", "land_width"),
     *("added_mass", "groove_stiffness", "pivot_speed", "axial_kick", "tilt_kick"),
 )
-
 
 ONE_VALUE = [
     *((field, 0.0, "must be > 0") for field in POSITIVE),

@@ -174,7 +174,6 @@ def test_a_stiffness_by_hertz_in_a_bore_says_that_it_is_of_a_flat_wall():
 
 # One cage and one environment for every verb: what a study names, and what it must say.
 
-
 OTHERS = """extends = "cryogenic-turbopump"
 [cage]
 {cage}

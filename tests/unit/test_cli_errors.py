@@ -183,7 +183,6 @@ def test_the_size_of_a_regular_file_is_told_and_all_else_refused(folder):
 
 # Cages at the edge of what can be: each command answers, or refuses in one line and writes nothing.
 
-
 BASE = """
 extends = "cryogenic-turbopump"
 

@@ -298,7 +298,6 @@ def test_the_library_on_the_page_is_right_and_the_page_names_every_key():
 
 # Wrong library files and wrong calls of `materials`: a line a mistake, exit status 2.
 
-
 RATIO = 'poisson_ratio = { value = 0.3, source = "our test", confidence = "measured" }'
 MODULUS = 'elastic_modulus = { value = "5 GPa", source = "our test", confidence = "measured" }'
 MATERIAL = f'[cage_material."Ours"]\n{MODULUS}\n{RATIO}\n'
@@ -313,7 +312,6 @@ environments = ["air, 440C"]
 "air, 440C" = 0.2
 """
 FLUID = '[fluid."slush"]\nsubstance = "nitrogen"\nphase = "liquid"\n'
-
 
 EDITS = r"""
 MATERIAL: DATUM => [DATUM, DATUM]

@@ -333,7 +333,6 @@ def test_an_envelope_has_a_curve_for_each_value_of_the_other_inputs():
 
 # Pages of `tribometer` and `compare`, and saved answers that are wrong.
 
-
 STUDY = read_study("cryogenic-turbopump")
 ANSWER = json.loads(json.dumps(document(bearing.VERB, computed(bearing.VERB, STUDY))))
 

@@ -99,7 +99,6 @@ SOFT = replace(SHIPPED.ranking.candidates[0].material, compressive_strength=100e
 FIRM = replace(SOFT, compressive_strength=None)
 ROW = Moved("A", largest_contact_force=50.0, largest_offset=501e-6)
 
-
 STATE = solve(SHIPPED)
 
 

@@ -315,7 +315,6 @@ def test_a_killed_job_goes_on_to_the_same_bytes(elsewhere, tmp_path, capsys):
 
 # Runs on a Dask cluster: the same numbers as here; and what is refused.
 
-
 FEW = replace(WHEEL.stability, runs=4, duration=0.005, restitution_factors=(0.2, 0.8))
 
 

@@ -11,7 +11,6 @@ from separatrix.verbs.check import _cage as checked
 
 EVEN = ", ".join(f'"{360 / 13 * j:.6f} deg"' for j in range(13))
 
-
 BASE = 'extends = "cryogenic-turbopump"\n[operation]\n{operation}\n[cage]\n{cage}\n'
 
 

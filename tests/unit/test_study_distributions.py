@@ -314,7 +314,6 @@ def test_a_wrong_number_of_bearings_is_refused(samples, words, capsys):
 
 # Distributions of one number: moments and quantiles by a second road, refusals, words.
 
-
 POINTS = (np.arange(2**16) + 0.5) / 2**16
 """Midpoints: the mean of a function of them is its integral, to 1e-9 for what is smooth inside."""
 

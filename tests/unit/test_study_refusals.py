@@ -59,7 +59,6 @@ friction = { "liquid nitrogen, 440C" = 0.11 }
 """
 TABLE = 'friction = "pin-on-disk-77K"\nmaterials = ["Armalon", "Vespel SP 211"]\n'
 
-
 EDITS = r"""
 model = "free" => model = "jones" :: "outer race control" ; got "jones"
 title = "A valid study" => runs = 3 :: line 1 ; runs ; is not a key of a study. It belongs in [stability]

@@ -29,7 +29,6 @@ pin_diameter = "5 mm"
 slip_speed = "4 m/s"
 """
 
-
 BOTH = ["tribometer", "a.csv", "b.csv", "--map", "map.toml"]
 
 

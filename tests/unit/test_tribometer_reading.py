@@ -208,7 +208,6 @@ THE_SAME = {  # a log, or a log and its map
     },
 }
 
-
 LOGGED = {  # columns beside friction and time
     "Anton Paar text, nano": {
         "normal_force": 5.0 * ONE,
@@ -327,7 +326,6 @@ FEW = np.arange(ROWS) % 20 == 5
 TEN = {"Ff [N]": FRICTION * 10.0}
 TENFOLD = as_written(FRICTION * 10.0) / 10.0
 BY_TEN = {"test": {"normal_force": "10 N"}}
-
 
 MADE = {  # columns beside the time, the friction made of them, begin of a note, map
     "percent": ({"COF [%]": FRICTION * 100.0}, as_written(FRICTION * 100.0) / 100.0, "", None),

@@ -147,7 +147,6 @@ def test_values_are_shown_in_the_unit_an_engineer_would_choose(row):
 
 # Whatever the text, the answer is a finite number or one line of refusal; units change nothing.
 
-
 EXAMPLE = shipped_studies()["cryogenic-turbopump"].read_text(encoding="utf-8")
 
 

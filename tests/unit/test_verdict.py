@@ -24,7 +24,6 @@ GUIDED = replace(CAGE, cage_speed=670.0, guidance=Guidance.OUTER, land_clearance
 SETTLES, WHIRLS = RunOutcome.SETTLES, RunOutcome.WHIRLS
 DRIFTS, UNRESOLVED, ROLLS = RunOutcome.DRIFTS, RunOutcome.UNRESOLVED, RunOutcome.ROLLS
 
-
 STABLE, UNSTABLE, UNDECIDED = Verdict.STABLE, Verdict.UNSTABLE, Verdict.UNDECIDED
 SETTLED, WHIRLING, ON_THE_LAND = CageMotion.SETTLED, CageMotion.WHIRLING, CageMotion.ON_THE_LAND
 ROLLING = CageMotion.ROLLING
@@ -178,7 +177,6 @@ RACE = SlipField(
     heathcote=1e-3, elastic_slip=0.02,
 )  # fmt: skip
 FREE = FreeBall(mass=1e-3, inertia=1e-8, inner=RACE, outer=RACE, fastest_rate=1e4)
-
 
 ONE_IS_ENOUGH = "A cage that is stable with one state is stable among free"
 REACHED = "reaches 30 % of what the races hold; with one state"
@@ -358,7 +356,6 @@ def test_evidence_is_the_worst_of_forces_and_offsets_and_the_median_of_the_rest(
 
 
 # Verdict, probability and worst kick of counts nobody thought of; ranks of any thresholds.
-
 
 quick = settings(max_examples=150)
 
