@@ -50,13 +50,11 @@ def coefficients(b, nu, columns, rows):
 
 @pytest.mark.parametrize("row", GALIN, ids=lambda row: f"{row[0]:g}-{row[1]:g}")
 def test_kalkers_coefficients(row):
-    """The usual grid of 1600 cells: 0.3 %, as asked of them. Published, to three digits: 1.1 %.
-
-    It is 40 x 40, 50 x 32 (2:1) or 68 x 24 (5:1). On 40 x 40 the long contacts are 0.10 (2:1) and 0.22 %
-    (5:1) off; C33, a small difference of two moments, 0.54 and 2.45 %.
-    """
+    """The usual grid of 1600 cells: 0.3 %, as asked of them. Published, to three digits: 1.1 %."""
     b, nu, *exact = row
     fine = coefficients(b, nu, None, None)
+    # It is 40 x 40, 50 x 32 (2:1) or 68 x 24 (5:1). On 40 x 40 the long contacts are 0.10 (2:1) and 0.22 %
+    # (5:1) off; C33, a small difference of two moments, 0.54 and 2.45 %.
     assert fine[2] == pytest.approx(fine[3], rel=1e-5)  # C23 = -C32
     values = np.delete(fine, 3)
     assert values == pytest.approx(exact, rel=3e-3)

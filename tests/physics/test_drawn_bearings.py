@@ -152,12 +152,10 @@ def test_fewer_samples_are_the_first_of_more(few, more, seed, dimensions):
 @FEW
 @given(st.integers(0, 10), st.integers(0, 2**62))
 def test_every_dimension_is_stratified_inside_the_cube(power, seed):
-    """A power of two of points has exactly one in each of as many equal cells, along every axis.
-
-    Each is in the middle of its cell of 2**-30, so none is 0 or 1, where a quantile has its end.
-    """
+    """A power of two of points has exactly one in each of as many equal cells, along every axis."""
     points = sobol_points(2**power, 5, seed)
     cells = np.sort(np.floor(points * 2**power).astype(int), axis=0)
+    # Each is in the middle of its cell of 2**-30, so none is 0 or 1, where a quantile has its end.
     assert (cells == np.arange(2**power)[:, None]).all()
     assert (np.mod(points * 2.0**31, 2.0) == 1.0).all()
     assert 0.0 < points.min() <= points.max() < 1.0

@@ -41,12 +41,10 @@ COMBINED = Operation(inner_speed=50_000 * RPM, axial_load=2670.0, radial_load=80
     ],
 )
 def test_218_bearing(model, angles, loads, ratio) -> None:
-    """The three kinematic models at 22 250 N and 10 000 rpm, friction 0.15; digits as given.
-
-    The gyroscopic moment opens the angles: with the wrong sign the inner one would fall to 44.9 deg.
-    """
+    """The three kinematic models at 22 250 N and 10 000 rpm, friction 0.15; digits as given."""
     result = equilibrium(BEARING_218, SPINNING, model, 0.15)
     digit = 0.01 if model is FREE else 0.001
+    # The gyroscopic moment opens the angles: with the wrong sign the inner one would fall to 44.9 deg.
     assert math.degrees(result.contact_angle_inner[0]) == pytest.approx(angles[0], abs=digit)
     assert math.degrees(result.contact_angle_outer[0]) == pytest.approx(angles[1], abs=digit)
     if loads:
@@ -441,15 +439,13 @@ def test_a_contact_wider_than_its_groove_is_refused() -> None:
 
 
 def test_balls_that_touch_nothing_have_nominal_angles() -> None:
-    """A ball on the far side of a radial load does not touch the missing upper half of the inner groove.
-
-    The groove was a full circle: such a ball reported an inner angle of 180 deg.
-    """
+    """A ball on the far side of a radial load does not touch the missing upper half of the inner groove."""
     sizes = {"ball_diameter": 1.0906e-3, "pitch_diameter": 61.72e-3, "ball_count": 160}
     grooves = {"contact_angle": math.radians(79.0), "inner_conformity": 0.6, "outer_conformity": 0.51}
     bearing = dataclasses.replace(BEARING, **sizes, **grooves)
     operation = Operation(inner_speed=0.0, outer_speed=10472.0, axial_load=0.0, radial_load=500.0)
     result = equilibrium(bearing, operation, KinematicModel.OUTER_RACE_CONTROL, 2.0)
+    # The groove was a full circle: such a ball reported an inner angle of 180 deg.
     assert not result.inner_contact.all()
     assert result.outer_contact.all()
     assert abs(result.contact_angle_inner).max() < 0.5 * math.pi

@@ -114,13 +114,11 @@ def test_a_stiffer_or_thinner_film_sticks_harder(b, nu, thickness, factor):
 @quick
 @given(shape, poisson, st.floats(0.02, 0.2))
 def test_a_film_in_series_is_the_limit_of_a_layer(b, nu, G):
-    """Layer of thickness h/b = 1e-4: the sticking force of L = h/G - h/G_base; 0.5 % at 14 columns.
-
-    Compressible film: the Poisson effect of a layer is of order h.
-    """
+    """Layer of thickness h/b = 1e-4: the sticking force of L = h/G - h/G_base; 0.5 % at 14 columns."""
     h = 1e-4 * b
     layer = contact(b, nu, columns=14, rows=10, friction=1e6, race=body(nu, (G, 0.2, h)))
     series = contact(b, nu, columns=14, rows=10, friction=1e6, film_compliance=h * (1.0 / G - G))
+    # Compressible film: the Poisson effect of a layer is of order h.
     assert kalker(layer, 1e-6).force == pytest.approx(kalker(series, 1e-6).force, rel=5e-3)
 
 

@@ -31,10 +31,7 @@ def race(outward: float) -> np.ndarray:
 
 
 def test_a_ball_is_spun_up_by_the_driving_race():
-    """E1: u = (10/7)(mu Q/m) t up to V/2 at 7 m V/(20 mu Q); the other race rolls, and carries 3/7 mu Q.
-
-    From rest, which is V/2 below free rolling. The rolling race creeps by some 5e-6 of V.
-    """
+    """E1: u = (10/7)(mu Q/m) t up to V/2 at 7 m V/(20 mu Q); the other race rolls, and carries 3/7 mu Q."""
     inner, outer = race(-1.0), race(1.0)
 
     def forces(y):
@@ -49,6 +46,7 @@ def test_a_ball_is_spun_up_by_the_driving_race():
     start = np.array([-0.5 * V, 0.5 * V / RADIUS])
     how = {"method": "Radau", "rtol": 1e-9, "atol": (1e-6, 1e-4), "t_eval": times}
     speed, turn = solve_ivp(rates, (0.0, times[-1]), start, **how).y
+    # From rest, which is V/2 below free rolling. The rolling race creeps by some 5e-6 of V.
     assert speed[0] + 0.5 * V == pytest.approx(10.0 / 7.0 * MU * Q / M * times[0], rel=1e-5)
     assert abs(speed[1]) < 1e-5 * V
     (driven, *_), (rolled, *_) = forces((speed[0], turn[0]))
@@ -82,10 +80,8 @@ def pivot(slide: float, spin: float = 1.0) -> tuple[float, float]:
 
 @pytest.mark.parametrize(("slide", "force", "moment"), PIVOTING)
 def test_sliding_and_pivoting_share_the_friction(slide, force, moment):
-    """E3, Contensou, on a circular Hertz contact: 4e-6 is what the extrapolation of slip fields leaves.
-
-    The engine's six strips are off by 7.7 % of the force and 15.4 % of the moment.
-    """
+    """E3, Contensou, on a circular Hertz contact: 4e-6 is what the extrapolation of slip fields leaves."""
+    # The engine's six strips are off by 7.7 % of the force and 15.4 % of the moment.
     assert pivot(slide) == pytest.approx((force, moment), abs=4e-6)
     found = slip_field.py_func(np.float64(slide), 1.0, 0.0, 0.0, 0.25, 1e-18)
     assert found[0] == pytest.approx(force, rel=0.08)

@@ -175,11 +175,9 @@ def moved(name, *, model=None, film=None, **operation):
 
 @pytest.mark.parametrize("name", NAMES)
 def test_push_saturates_below_the_capacity_and_the_law_of_traction_with_it(name):
-    """At six times the speed of capacity over C_f all slips, and spin takes some of the friction.
-
-    The law has the exact slope at rest, and is 2 % of the capacity from the slip fields at most.
-    """
+    """At six times the speed of capacity over C_f all slips, and spin takes some of the friction."""
     found = moved(name)
+    # The law has the exact slope at rest, and is 2 % of the capacity from the slip fields at most.
     for force in (found.force_forward, found.force_backward):
         assert 0.85 < force[-1] / found.capacity < 1.0
     assert found.force_forward[0] / found.speed[0] == pytest.approx(found.linear.damping, rel=0.02)

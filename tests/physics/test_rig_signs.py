@@ -40,11 +40,9 @@ def test_a_cage_without_friction_leaves_the_torque_to_the_races():
 
 
 def test_a_whirl_gives_its_power_to_the_torque(whirling):
-    """Pocket heat by the samples: friction, force, and the balls' surface against the moving cage.
-
-    The surface of a ball moves outward in front of it and inward behind, and along the axis by its pitch.
-    """
+    """Pocket heat by the samples: friction, force, and the balls' surface against the moving cage."""
     found, (chain, _, history) = whirling
+    # The surface of a ball moves outward in front of it and inward behind, and along the axis by its pitch.
     assert history.outcome is RunOutcome.WHIRLS
     speed = abs(chain.study.operation.inner_speed)
     balls, angle = chain.bearing.equilibrium, history.pocket_angle

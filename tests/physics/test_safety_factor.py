@@ -62,10 +62,7 @@ def test_beyond_what_was_searched_only_the_lower_end_is_known():
 
 @pytest.mark.parametrize("slope", [2.0, 10.0, 30.0])
 def test_the_interval_of_a_critical_friction_covers_it(slope):
-    """Of 300 responses whose logit rises by a slope in ln f: 95 %, less three deviations of that count.
-
-    Light cages have slopes of 2; with 3 as the lowest that is thought possible 72 % were covered.
-    """
+    """Of 300 responses whose logit rises by a slope in ln f: 95 %, less three deviations of that count."""
     rng, covered = np.random.default_rng(5), 0
     for _ in range(300):
         at = math.exp(rng.uniform(math.log(0.08), math.log(0.4)))
@@ -76,6 +73,7 @@ def test_the_interval_of_a_critical_friction_covers_it(slope):
 
         found = Response(look, 64).crossing(0.5, 48, at * math.exp(rng.normal(0.0, 0.5)))
         covered += found.low <= at <= found.high
+    # Light cages have slopes of 2; with 3 as the lowest that is thought possible 72 % were covered.
     assert covered / 300 >= 0.95 - 3.0 * math.sqrt(0.95 * 0.05 / 300)
 
 
@@ -157,15 +155,13 @@ def test_the_worst_disturbance_sets_the_critical_friction():
 
 
 def test_the_full_model_asks_free_balls_and_a_wider_race():
-    """Full: free balls decide where the friction of a whirl passes a quarter; the damper comes far lower.
-
-    Balls as rigid bodies on their whole slip fields had f_1/2 = 0.217 from 2 m/s, friction along e_r; along
-    the sliding of a ball that pitches by 25 degrees that is 0.217/cos 25 = 0.24 (findings of this round, P2),
-    within a tenth for 32 runs a point. The damper had 0.150.
-    """
+    """Full: free balls decide where the friction of a whirl passes a quarter; the damper comes far lower."""
     settings = StabilitySettings(kicks=(2.0,), reference_kick=2.0, runs=64)
     full = cage_limit(solved(model=CageModel.FULL), settings, Runner())
     paper = cage_limit(solved(model=CageModel.PAPER), settings, Runner())
+    # Balls as rigid bodies on their whole slip fields had f_1/2 = 0.217 from 2 m/s, friction along e_r; along
+    # the sliding of a ball that pitches by 25 degrees that is 0.217/cos 25 = 0.24 (findings of this round,
+    # P2), within a tenth for 32 runs a point. The damper had 0.150.
     assert (full.critical_ball, paper.critical_ball) == ("free", "damper")
     assert full.own_critical_friction == pytest.approx(0.24, rel=0.1)
     assert paper.own_critical_friction == pytest.approx(0.150, rel=0.1)

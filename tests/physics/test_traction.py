@@ -231,11 +231,9 @@ def test_a_softer_film_never_raises_the_slope(mu, lam, factor, spin):
 @settings(max_examples=80)
 @given(friction, film, rise, size, st.one_of(st.just(0.0), signed))
 def test_with_heathcote_the_trends_hold_within_three_percent(mu, lam, factor, spin, heathcote):
-    """The moving offset may lift the slope by up to 3 % as the film softens; friction never lowers it.
-
-    That f_BT up is slope up holds for pure spin, too; the paper says the opposite (docs/deviations.md).
-    """
+    """The moving offset may lift the slope by up to 3 % as the film softens; friction never lowers it."""
     parts = creep_of(spin, heathcote)
+    # That f_BT up is slope up holds for pure spin, too; the paper says the opposite (docs/deviations.md).
     assert slope_of(parts, mu, lam * factor) <= slope_of(parts, mu, lam) * 1.03
     assert slope_of(parts, mu * factor, lam) >= slope_of(parts, mu, lam) * (1.0 - NOISE)
 

@@ -103,14 +103,12 @@ def test_friction_on_the_land_may_only_drag():
 
 
 def test_a_whirl_weaker_than_the_loads_rolls_whatever_the_duration():
-    """Unevenly driven balls hold the cage; dead pockets whirl it, at a seventh of their energy.
-
-    Pockets feed it, and no verdict calls it unstable: it rolls, from half to twice the usual duration.
-    """
+    """Unevenly driven balls hold the cage; dead pockets whirl it, at a seventh of their energy."""
     cage = cage_at(shipped("lox-turbopump", 500.0), 0.0, 0.45)
     settings = StabilitySettings(duration=0.15)
     found = run_ensemble(cage, settings, kicks=(0.9,), runs=RUNS)
     rolls = found.outcome == RunOutcome.ROLLS
+    # Pockets feed it, and no verdict calls it unstable: it rolls, from half to twice the usual duration.
     assert np.count_nonzero(rolls) > RUNS // 2
     assert np.all(found.end_energy[rolls] < 0.5 * drive_energy(cage))
     assert np.all(found.pocket_power[rolls] > 0.0)

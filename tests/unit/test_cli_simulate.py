@@ -117,16 +117,14 @@ def swept(time, place, rate):
 
 
 def test_whirl_of_the_samples_is_that_of_the_engine(answered):
-    """Orbit, cone and offset of the judged part, which the engine sums up step by step.
-
-    Trapezoids over samples of two steps are off by 1.7e-5, 8e-5 and 1.8e-6 as measured: three times that.
-    """
+    """Orbit, cone and offset of the judged part, which the engine sums up step by step."""
     answer = separatrix.simulate(answered.with_suffix(".toml"))
     settings = settings_for(answer.study.stability, answer.cage)
     engine = run_ensemble(answer.cage, settings, kicks=[answer.kick], runs=1)
     run, turn = answer.history, answer.cage.cage_speed
     part = (run.time >= run.judged_from) & (run.time <= run.followed)
     orbit = swept(run.time[part], run.position[part], run.velocity[part])
+    # Trapezoids over samples of two steps are off by 1.7e-5, 8e-5 and 1.8e-6 as measured: three times that.
     assert run.orbit_speed == engine.orbit_speed[0, 0]
     assert run.orbit_speed == pytest.approx(orbit + turn, abs=5e-5 * turn)
     # 1.8e-6 measured, three times that: samples stand two steps apart

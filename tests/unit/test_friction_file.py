@@ -107,12 +107,11 @@ def test_the_cage_asks_for_what_its_pocket_rubs():
 
 
 def test_the_shipped_study_rubs_at_25_metres_a_second():
-    """The pocket of the shipped study: regression, 25.1 m/s and 157 MPa in an impact of the middle kick.
-
-    67.4 N: of half the mass of the ring, which is what an impact feels; the whole mass would press with 84 N.
-    """
+    """The pocket of the shipped study: regression, 25.1 m/s and 157 MPa in an impact of the middle kick."""
     solution = solve(read_study("cryogenic-turbopump"))
     found = solution.pocket
+    # 67.4 N: of half the mass of the ring, which is what an impact feels; the whole mass would press with 84
+    # N.
     assert solution.felt_mass == pytest.approx(
         0.5 * solution.inertia.mass, rel=1e-12
     )  # a thin ring; rounding

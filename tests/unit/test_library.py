@@ -131,12 +131,10 @@ def test_the_friction_table_is_the_paper_s():
 
 
 def test_numbers_that_answers_depend_on_have_not_moved():
-    """Solids of the shipped study; PTFE cold, warm and, said, between; nitrogen as published.
-
-    806.5 kg/m3 at 77.35 K (Wisconsin, after Jacobsen 1986); the newer equation is 0.06 % off.
-    """
+    """Solids of the shipped study; PTFE cold, warm and, said, between; nitrogen as published."""
     study = read_study("cryogenic-turbopump")
     steel, film = study.bearing.ball_material, study.film.body
+    # 806.5 kg/m3 at 77.35 K (Wisconsin, after Jacobsen 1986); the newer equation is 0.06 % off.
     assert (steel.elastic_modulus, steel.poisson_ratio, steel.density) == (200e9, 0.285, 7650.0)
     assert (film.elastic_modulus, film.poisson_ratio) == (4e9, 0.38)
     warm, cold, between = (LIBRARY.material("film", "PTFE", at) for at in (295.0, 77.0, 150.0))

@@ -291,11 +291,7 @@ runs = 16
 
 @pytest.mark.usefixtures("undrawn")
 def test_a_killed_job_goes_on_to_the_same_bytes(elsewhere, tmp_path, capsys):
-    """SIGKILL with some of the runs kept: no other file is left, and the next call takes those runs.
-
-    The ledger is the same for every verb; those of rank and map that are interrupted go on in test_ranking
-    and test_stability_map.
-    """
+    """SIGKILL with some of the runs kept: no other file is left, and the next call takes those runs."""
     Path("s.toml").write_text(STUDY)
     given = "sweep s.toml --vary ball_cage_friction=0.1..0.4:6 --verdicts --json --jobs 1"
     call = given.split()
@@ -305,6 +301,8 @@ def test_a_killed_job_goes_on_to_the_same_bytes(elsewhere, tmp_path, capsys):
         time.sleep(0.02)
     process.kill()
     process.communicate()
+    # The ledger is the same for every verb; those of rank and map that are interrupted go on in test_ranking
+    # and test_stability_map.
     assert {path.name.removesuffix("-wal").removesuffix("-shm") for path in Path("k").iterdir()} == {NAME}
     assert main([*call, "--out", "k"]) == 0
     resumed, said = capsys.readouterr()

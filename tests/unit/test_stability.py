@@ -200,16 +200,14 @@ def test_runs_are_numbered_one_after_the_other_and_few_are_wasted_far_from_the_c
 
 
 def test_unresolved_runs_are_told(monkeypatch):
-    """They count as not whirling, and a note says how many, but for those whose motion falls.
-
-    A ball at the edge of its wall counts as a whirl: where all balls leave their pockets no motion settles.
-    """
+    """They count as not whirling, and a note says how many, but for those whose motion falls."""
     cage = CAGE
     found = run_ensemble(cage, StabilitySettings(duration=1e-3), kicks=(0.5,), runs=5)
     found.outcome[0] = (RunOutcome.WHIRLS, *[RunOutcome.UNRESOLVED] * 4)
     found.cause[0] = (Cause.NONE, Cause.NOT_FINITE, Cause.NO_CONTACT, Cause.FALLING, Cause.LEFT_POCKET)
     monkeypatch.setattr(runner.Runner, "ensemble", lambda *_, **__: found)
     count = responses(cage, StabilitySettings(), (0.5,), Runner())[0.5].add(cell_of(0.1), 5)
+    # A ball at the edge of its wall counts as a whirl: where all balls leave their pockets no motion settles.
     assert (count.whirling, count.runs) == (2, 5)
     (note,) = count.notes
     assert re.search(r"2 of 5 runs from 0.5 m/s at friction 0.1 .* not whirling", note)

@@ -43,12 +43,10 @@ FORMS = {
 
 @pytest.mark.parametrize("text", FORMS)
 def test_every_form_is_read(text, study_of):
-    """The kind and its numbers, to rounding of the unit; and the text as it stands in the file.
-
-    What follows the sign is two standard deviations, as on a certificate (GUM, 7.2.4).
-    """
+    """The kind and its numbers, to rounding of the unit; and the text as it stands in the file."""
     study = study_of(f"[film]\nthickness = {text}\n")
     found, wanted = study.distributions["film.thickness"], FORMS[text]
+    # What follows the sign is two standard deviations, as on a certificate (GUM, 7.2.4).
     assert found.kind == wanted.kind
     assert (found.mean, found.standard_deviation) == pytest.approx(
         (wanted.mean, wanted.standard_deviation), rel=1e-14
@@ -332,13 +330,11 @@ CASES = {
 
 @pytest.mark.parametrize("name", CASES)
 def test_quantiles_and_moments_are_those_of_scipy_and_of_their_integrals(name):
-    """To rounding; the log-normal of scipy has no end, which moves 2.9e-7 of probability.
-
-    The cut at 5 standard deviations takes 8e-6 of a normal one's and 3e-5 of this log-normal one's. The
-    outermost points that a sampling can give stay between the stated ends.
-    """
+    """To rounding; the log-normal of scipy has no end, which moves 2.9e-7 of probability."""
     ours, theirs = CASES[name]
     u = np.linspace(0.01, 0.99, 99)
+    # The cut at 5 standard deviations takes 8e-6 of a normal one's and 3e-5 of this log-normal one's. The
+    # outermost points that a sampling can give stay between the stated ends.
     assert ours.quantile(u) == pytest.approx(theirs.ppf(u), rel=1e-5 if name == "log-normal" else 1e-12)
     assert float(np.mean(ours.quantile(POINTS))) == pytest.approx(ours.mean, rel=1e-5)
     assert ours.mean == pytest.approx(theirs.mean(), rel=1e-12)

@@ -301,15 +301,13 @@ def test_gravity_unbalance_and_leading_balls_drive_too():
 
 
 def test_a_leaning_axis_and_gravity_along_it_drive_in_space():
-    """2 w_z (M g_z + |J_p - J_t| Omega^2 delta / R), w_z = 0.3 mm in bores; the fluid's mass turns too.
-
-    Neither presses the cage on its land, and a cage whose axial motion nothing limits falls for ever.
-    """
+    """2 w_z (M g_z + |J_p - J_t| Omega^2 delta / R), w_z = 0.3 mm in bores; the fluid's mass turns too."""
     body = {"motion": MotionModel.SPACE, "transverse_inertia": 4e-5, "pocket_shape": PocketShape.CYLINDRICAL}
     plain = replace(GUIDED, **body)
     loads = {"axial_gravity": -9.81, "dynamic_unbalance": 1e-3}
     loaded = replace(plain, **loads)
     tilting = abs(plain.moment_of_inertia - 4e-5) * 670.0**2 * 1e-3 / plain.pitch_radius
+    # Neither presses the cage on its land, and a cage whose axial motion nothing limits falls for ever.
     assert drive_energy(plain) == drive_energy(GUIDED)
     extra = drive_energy(loaded) - drive_energy(plain)
     assert extra == pytest.approx(6e-4 * (0.05 * 9.81 + tilting), rel=1e-9)
