@@ -23,13 +23,9 @@ from separatrix.study.study import Cooling, Guidance
 LN2 = Fluid(807.9576, 1.63216e-4)  # 77 K, 2 bar
 ORBIT, SPEED, RADIUS = 668.9886, 500.0 * math.pi, 0.0325
 COOLING = Cooling(
-    swirl=0.5,
-    flow="50 g/s",
-    race_conductance="5 W/K",
-    inner_cooling="20 W/K",
-    outer_cooling="30 W/K",
+    swirl=0.5, flow="50 g/s", race_conductance="5 W/K", inner_cooling="20 W/K", outer_cooling="30 W/K",
     ball_cooling="25 W/K",
-)
+)  # fmt: skip
 
 
 @pytest.fixture(scope="module")

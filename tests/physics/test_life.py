@@ -102,28 +102,19 @@ def test_a_ball_wears_its_own_cap():
 
 
 TRACK = TrackWork(
-    across=np.array([-0.5, 0.5]),
-    share=np.array([0.5, 0.5]),
-    work=np.array([100.0, 100.0]),
-    passes=1.0,
+    across=np.array([-0.5, 0.5]), share=np.array([0.5, 0.5]), work=np.array([100.0, 100.0]), passes=1.0,
     area=1e-4,
-)
+)  # fmt: skip
 BEARING = BearingWear(
     tracks=(TRACK, TRACK), loads=(1.0, 1.0), ball_diameter=1e-2, ball_count=10, clearance=3e-4
 )
 FLAT = np.ones((2, 2))
 TABLE = LifeTable(
-    race_friction=np.array([0.05, 0.5]),
-    pocket_clearance=np.array([3e-4, 3e-3]),
-    critical_friction=0.05 / np.array([[0.05, 0.05], [0.5, 0.5]]) * 0.4,
-    steepness=30.0 * FLAT,
-    calm_sliding=2.0 * FLAT,
-    whirl_sliding=200.0 * FLAT,
-    calm_land_sliding=1.0 * FLAT,
-    whirl_land_sliding=1.0 * FLAT,
-    land_exponent=-1.0,
-    land_widening=1.5,
-)
+    race_friction=np.array([0.05, 0.5]), pocket_clearance=np.array([3e-4, 3e-3]),
+    critical_friction=0.05 / np.array([[0.05, 0.05], [0.5, 0.5]]) * 0.4, steepness=30.0 * FLAT,
+    calm_sliding=2.0 * FLAT, whirl_sliding=200.0 * FLAT, calm_land_sliding=1.0 * FLAT,
+    whirl_land_sliding=1.0 * FLAT, land_exponent=-1.0, land_widening=1.5,
+)  # fmt: skip
 """Critical friction falls as one over race friction: 0.4 at 0.05."""
 
 PHASE = [Phase(share=1.0, bearing=BEARING, table=TABLE)]

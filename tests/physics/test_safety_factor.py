@@ -26,13 +26,9 @@ from separatrix.verdict.stability_curve import CriticalFriction, critical_fricti
 
 SHIPPED = separatrix.read_study("cryogenic-turbopump")
 LIMIT = CageLimit(
-    own_critical_friction=0.25,
-    own_critical_friction_low=0.2,
-    own_critical_friction_high=0.3,
-    critical_kick=2.0,
-    critical_ball="free",
-    estimated_critical_friction=0.2,
-)
+    own_critical_friction=0.25, own_critical_friction_low=0.2, own_critical_friction_high=0.3,
+    critical_kick=2.0, critical_ball="free", estimated_critical_friction=0.2,
+)  # fmt: skip
 
 FULL = {"model": CageModel.FULL}
 

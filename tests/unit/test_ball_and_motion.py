@@ -7,7 +7,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from cages import AT_REST
-from commands import refused
 
 from separatrix import BallTraction, InputError, read_study
 from separatrix.study.cage_body import cage_inertia, ring_body
@@ -87,19 +86,6 @@ def test_a_cage_that_cannot_be_is_refused(keys, said):
     """Sizes that leave no cage, lands beside it, an inertia that no body has: a line each."""
     with pytest.raises(InputError, match=re.escape(said)):
         shipped(**keys)
-
-
-ASKED = [
-    (("simulate", "le7", "--model", "full"), "[cage] is missing; `--model` needs it"),
-    (("sweep", "le7", "--model", "paper"), "[cage] is missing; `--model` needs it"),
-    (("rank", "cryogenic-turbopump", "--model", "cube"), "full, paper"),
-]
-
-
-@pytest.mark.parametrize(("arguments", "said"), ASKED)
-def test_a_model_that_cannot_be_is_refused(arguments, said, capsys, elsewhere):
-    """A study without a cage has no model of it; one line names the models there are."""
-    assert said in refused(capsys, *arguments)
 
 
 def test_forces_of_a_law():

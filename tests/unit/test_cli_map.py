@@ -5,7 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from commands import SMALL, document, refused
+from commands import SMALL, document
 
 from separatrix import InputError, read_study, solve
 from separatrix.front import main
@@ -77,22 +77,6 @@ def test_a_wrong_axis_is_refused(text, said):
     with pytest.raises(InputError) as refusal:
         read_axis(text, "--x", 5)
     assert said in str(refusal.value)
-
-
-@pytest.mark.parametrize(
-    ("options", "said"),
-    [
-        (["--x", "cage.mas=1..2g"], "Did you mean cage.mass?"),
-        (["--y", "restitution_factor=0..1"], "restitution_factor twice"),
-        (["--x", "kick=0.1..1m/s", "--kick", "1 m/s"], "exclude each other"),
-        (["--points", "1"], "--points"),
-        (["--runs", "0"], "--runs"),
-        (["--x", "cage.pocket_clearance=20..40mm:2", "--points", "2"], "no point that could be run"),
-    ],
-)
-def test_wrong_options_are_refused_in_one_line(options, said, capsys):
-    """One line, status 2, nothing written."""
-    assert said in refused(capsys, "map", "small.toml", *options)
 
 
 def test_a_refused_point_is_a_row_with_its_reason(capsys):

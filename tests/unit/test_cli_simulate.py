@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from commands import SMALL, document, refused
+from commands import SMALL, document
 
 import separatrix
 from separatrix.cage import run_ensemble, settings_for
@@ -175,20 +175,6 @@ def test_a_ball_that_leaves_its_pocket_is_named_with_its_time(folder):
     assert 1 <= found.history.left_ball <= 13
     said = f"Ball {found.history.left_ball} reaches the edge of its pocket's wall at "
     assert said in words(found.summary())
-
-
-@pytest.mark.parametrize(
-    ("options", "said"),
-    [
-        (["--kick", "2"], "needs a unit of speed"),
-        (["--kick", "0 m/s"], "must be >"),
-        (["--kick", "-1 m/s"], "must be >"),
-        (["--run", "-1"], "--run must lie between"),
-    ],
-)
-def test_wrong_options_are_refused_in_one_line(options, said, capsys):
-    """One line, status 2, nothing written."""
-    assert said in refused(capsys, "simulate", "cryogenic-turbopump", *options)
 
 
 @pytest.mark.usefixtures("undrawn")

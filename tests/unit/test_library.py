@@ -5,7 +5,7 @@ import pickle
 from importlib.resources import files
 
 import pytest
-from commands import changed, refusal, refusal_line, refused, rows_of, written
+from commands import changed, refusal, refusal_line, rows_of, written
 
 from separatrix import read_study, resolved
 from separatrix.ground.schema import keys_of
@@ -384,22 +384,3 @@ def test_one_name_in_two_libraries_is_refused(tmp_path):
     line = refusal_line(written(tmp_path, 'library = "more.toml"\nextends = "cryogenic-turbopump"\n'))
     assert "more.toml, line 1" in line
     assert "is in materials.toml, line 1 too" in line
-
-
-CALLS = {
-    "an unknown kind": (["list", "--kind", "flim"], "Did you mean film?"),
-    "a library that is missing": (["list", "--library", "no.toml"], "--library does not name a file"),
-    "no name": (["show"], "Missing argument 'NAME'"),
-    "an unknown name": (["show", "440 C"], "Did you mean 440C?"),
-    "an empty name": (["show", ""], "is not a record of the library"),
-    "a name of another kind": (["show", "440C", "--kind", "film"], "is not a film of the library"),
-}
-
-
-@pytest.mark.parametrize("what", CALLS)
-def test_a_wrong_call_is_refused_in_one_line(what, capsys):
-    """Exit status 2, and nothing on standard output."""
-    arguments, words = CALLS[what]
-    line = refused(capsys, "materials", *arguments)
-    assert line.startswith("separatrix: ")
-    assert words in line

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from commands import refusal_line, refused, rows_of, written
+from commands import refusal_line, rows_of, written
 from scipy import stats
 from scipy.stats import lognorm
 
@@ -296,18 +296,6 @@ def test_numbers_that_overflow_are_refused_in_one_line(kind, tmp_path):
     """Where the mean, the deviation or the quantiles would leave what a computer can hold."""
     line = refusal_line(written(tmp_path, HEAD + TOO_FAR[kind]))
     assert re.match(r"study.toml, line \d+: .* must be", line)
-
-
-@pytest.mark.parametrize(
-    ("samples", "words"),
-    [
-        *((text, "must be a power of two from 64") for text in ("0", "-64", "32")),
-        *(("1000", "Try 1024."), ("131072", "to 65536"), ("9" * 30, "to 65536")),
-    ],
-)
-def test_a_wrong_number_of_bearings_is_refused(samples, words, capsys):
-    """Of the verb that draws them."""
-    assert words in refused(capsys, "sensitivity", "cryogenic-turbopump", "--samples", samples)
 
 
 # Distributions of one number: moments and quantiles by a second road, refusals, words.

@@ -15,15 +15,10 @@ from separatrix.verbs.tribometer import _worn
 TIME = np.linspace(0.0, 3600.0, 3601)
 NOISE = np.random.Generator(np.random.Philox(7)).normal(size=TIME.size)
 LOG = RawLog(
-    source="pin.csv",
-    checksum="",
-    format="",
-    friction=0.1 + 1e-3 * NOISE,
-    time=TIME,
-    distance=0.5 * TIME,
+    source="pin.csv", checksum="", format="", friction=0.1 + 1e-3 * NOISE, time=TIME, distance=0.5 * TIME,
     wear_depth=1e-6 * np.minimum(TIME, 600.0) / 600.0 + 2e-9 * 0.5 * TIME + 1e-7 * NOISE,
     conditions=Conditions(pressure=2e6),
-)
+)  # fmt: skip
 
 
 def test_depth_over_pressure_and_way():

@@ -358,7 +358,7 @@ def test_evidence_is_the_worst_of_forces_and_offsets_and_the_median_of_the_rest(
 quick = settings(max_examples=150)
 
 OF_THREE = replace(ON_A_LAND, ball_count=3)
-SETTLED, WHIRLED, ROLLED = int(RunOutcome.SETTLES), int(RunOutcome.WHIRLS), int(RunOutcome.ROLLS)
+SETTLED, WHIRLED = int(RunOutcome.SETTLES), int(RunOutcome.WHIRLS)
 
 
 @st.composite
