@@ -1,6 +1,7 @@
 """Bearings by designation, and what the library has of wear and friction: sources, origins, refusals."""
 
 import math
+import re
 from dataclasses import replace
 
 import pytest
@@ -112,25 +113,15 @@ def test_wrong_designations_are_refused_in_one_line(tmp_path, old, new, words):
 
 def test_a_bearing_of_the_user_is_one_of_the_library(tmp_path):
     """Beside the study, with the angle that its maker states."""
-    written(
-        tmp_path,
-        "".join(
-            f'[bearing."Ours 12"]\n{key} = {{ value = {value}, source = "sheet", confidence = "maker" }}\n'
-            if key == "ball_count"
-            else f'{key} = {{ value = {value}, source = "sheet", confidence = "maker" }}\n'
-            for key, value in [
-                ("ball_count", 12), ("ball_diameter", '"7 mm"'), ("pitch_diameter", '"36 mm"'),
-                ("contact_angle", '"15 deg"'),
-            ]
-        ),
-        "materials.toml",
-    )  # fmt: skip
+    known = 'ball_count = 12, ball_diameter = "7 mm", pitch_diameter = "36 mm", contact_angle = "15 deg"'
+    lines = [re.sub("= (.*)", r'= { value = \1, source = "sheet", confidence = "maker" }', one)
+             for one in known.split(", ")]  # fmt: skip
+    path = written(tmp_path, "\n".join(['[bearing."Ours 12"]', *lines, ""]), "materials.toml")
     text = SIZE_608.replace("608-zz", "ours 12").replace('radial_clearance = "12 um"\n', "")
     bearing = read_study(written(tmp_path, text, "case.toml")).bearing
     assert (bearing.ball_count, bearing.contact_angle) == (12, pytest.approx(math.radians(15.0), rel=1e-15))
     assert bearing.bore is None
     twice = 'radial_clearance = { value = "9 um", source = "sheet", confidence = "maker" }\n'
-    path = tmp_path / "materials.toml"
     path.write_text(path.read_text() + twice)
     assert "radial_clearance" in refusal(tmp_path / "case.toml")
 

@@ -70,23 +70,17 @@ def row(document, name):
     return next(row for row in document["materials"] if row["name"] == name)
 
 
-def test_what_was_not_measured_is_missing(small):
-    """Everything is null but name and reason."""
-    found = small
-    missing = row(found, "C")
+def test_each_friction_has_the_scatter_that_is_known_of_it(small):
+    """A measured one that of a new cage, a stated one its own; what was not measured is null with a reason."""
+    missing = row(small, "C")
     assert missing["reason"] == "not measured in air"
     assert missing["friction"] is missing["probability_stable"] is missing["verdict"] is None
-
-
-def test_each_friction_has_the_scatter_that_is_known_of_it(small):
-    """A measured one that of a new cage, an unrepeated one the default, a stated one its own."""
-    found = small
     expected = {"A": 0.02 * (1 + 1 / 4) ** 0.5, "B": 0.015}
     for name, deviation in expected.items():
-        known = row(found, name)
+        known = row(small, name)
         assert known["friction_deviation"] == pytest.approx(deviation, rel=0.05)  # of 64 spread draws
         assert known["friction_scatter_assumed"] is False
-    sources = {one["name"]: one["source"] for one in found["inputs"]}
+    sources = {one["name"]: one["source"] for one in small["inputs"]}
     known = {"film.thickness": "study", "ranking.A.air": "measured"}
     assert known.items() <= sources.items()
 

@@ -34,15 +34,7 @@ TILTS = ("axial_place", "axial_speed", "lean", "lean_rate", "ball_axial")
 def history(**changes) -> History:
     """A cage at rest in the middle of its balls, with these changes."""
     none, flat, of_balls = (np.zeros((TIME.size, *shape)) for shape in ((), (2,), (BALLS,)))
-    numbers = [
-        "rotation",
-        "rotation_rate",
-        "kinetic_energy",
-        "stored_energy",
-        "land_force",
-        "axial_place",
-        "axial_speed",
-    ]
+    numbers = ["rotation", "rotation_rate", "kinetic_energy", "stored_energy", "land_force", *TILTS[:2]]
     balls = ["ball_lead", "ball_speed", "ball_axial", "contact_force", "contact_angle"]
     values = {
         **dict.fromkeys((one.name for one in fields(History)), 0.0),

@@ -4,6 +4,7 @@ import re
 from pathlib import Path
 
 import pytest
+from commands import extended
 
 import separatrix
 from separatrix.present.blocks import Facts, Table
@@ -63,9 +64,8 @@ def test_the_report_has_the_claimed_levels_and_counts_the_study():
 
 def test_uncertain_and_varied_inputs_are_named(tmp_path):
     """Of a study with a distribution, and with a sensitivity among its answers."""
-    path = tmp_path / "thin.toml"
-    path.write_text('extends = "cryogenic-turbopump"\nfilm.thickness = "0.5 um +- 20 %"\n')
-    bearing = {"study": resolved(separatrix.read_study(path)), "warnings": []}
+    thin = extended(tmp_path, 'film.thickness = "0.5 um +- 20 %"\n')
+    bearing = {"study": resolved(thin), "warnings": []}
     _, counted = _shown({"bearing": bearing, "sensitivity": bearing})
     assert counted["Uncertain inputs"] == "film.thickness"
     assert counted["Results robustness"] == "varied by `sensitivity`"

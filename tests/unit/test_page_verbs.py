@@ -3,7 +3,7 @@
 import json
 
 import pytest
-from commands import log
+from commands import extended, log, written
 from test_reference_tables import missing
 
 from separatrix import InputError, read_study, restitution_factor, wilson_interval
@@ -45,8 +45,7 @@ def changed(tmp_path, name, *edits, more=""):
     for old, new in edits:
         assert old in text
         text = text.replace(old, new)
-    (tmp_path / "changed.toml").write_text(text + more, encoding="utf-8")
-    return read_study(tmp_path / "changed.toml")
+    return read_study(written(tmp_path, text + more))
 
 
 SOFT = ('thickness = "1 um"', 'thickness = "50 um"\nelastic_modulus = "20 MPa"\npoisson_ratio = 0.3')
@@ -108,9 +107,8 @@ def test_check_says_what_a_moving_cage_will_be_refused_for(tmp_path, edits, more
 def test_notes_do_not_stand_below_uncertain_inputs_that_are_not_there(tmp_path):
     """A guess that is noted is no such input; one with a distribution has the heading."""
     for mass, there in (("25 g", False), ("25 g +- 10 %", True)):
-        path = tmp_path / "noted.toml"
-        path.write_text(f'extends = "le7"\n[cage]\nmass = "{mass}"\npocket_clearance = "0.6 mm"\n{LAND}')
-        shown = text(verb_named("check").page(answer("check", read_study(path))))
+        keys = f'[cage]\nmass = "{mass}"\npocket_clearance = "0.6 mm"\n{LAND}'
+        shown = text(verb_named("check").page(answer("check", extended(tmp_path, keys, "le7"))))
         assert "land_stiffness 10 MN/m" in shown
         assert ("Uncertain inputs" in shown) is there
 
@@ -339,9 +337,7 @@ ANSWER = json.loads(json.dumps(document(bearing.VERB, computed(bearing.VERB, STU
 
 def saved(folder, name="bearing", **changes):
     """Write the answer of a bearing, changed, and return its path."""
-    path = folder / f"{name}.json"
-    path.write_text(json.dumps(ANSWER | changes))
-    return path
+    return written(folder, json.dumps(ANSWER | changes), f"{name}.json")
 
 
 # --- saved answers ------------------------------------------------------------------------------
