@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 from commands import SMALL, refused, rows_of
-from test_study_refusals import VALID
+from test_study import VALID
 
 import separatrix
 from separatrix import InputError, RunOutcome

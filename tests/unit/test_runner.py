@@ -17,11 +17,15 @@ import distributed
 import numpy as np
 import pytest
 from commands import COMMAND, pieces, refusal_line
+from hypothesis import given
+from hypothesis import strategies as st
 
 from separatrix import InputError, MotionModel, PocketShape, read_study, solve, stability_curve
 from separatrix.cage import Ensemble, moving_cage, run_ensemble, settings_for
 from separatrix.cage.ensemble import Runs, follow_alike
 from separatrix.front import main
+from separatrix.front.console import Pace
+from separatrix.ground.compiling import COMPILING
 from separatrix.verdict import cluster as clusters
 from separatrix.verdict.cluster import cluster
 from separatrix.verdict.ledger import NAME, Ledger, key_of
@@ -373,3 +377,74 @@ def test_without_the_extra_the_refusal_names_it(monkeypatch):
     text = refused("local:1")
     assert "needs the extra cluster" in text
     assert "separatrix[cluster]" in text
+
+
+# How far a long job is: the told share never falls, and the time left is about right from a tenth on.
+# The files in `recorded_work` are events of real runs of `separatrix VERB cryogenic-turbopump --jobs 1`: what
+# the job announced to `Work` (load, spend, keep, end, finish), and when it reported, by the processor time of
+# the process, which no neighbour on the machine changes: ``report`` [s], or for a map, which counts its
+# points, ``pace`` [s] with done and total.
+
+RECORDED = sorted((Path(__file__).parent / "recorded_work").glob("*.json"))
+SOME_WORK = st.floats(0.0, 1e3)
+
+
+@given(st.lists(st.tuples(SOME_WORK, SOME_WORK), min_size=1))
+def test_the_share_never_falls_however_much_work_is_found(steps):
+    """Any amounts done, any rest expected after each: the share rises within 0 and 1, and ends at 1."""
+    pace, done, before = Pace(), 0.0, 0.0
+    for made, rest in [*steps, (1.0, 0.0)]:
+        done += made
+        pace(done, done + rest)
+        assert before <= pace.share <= 1.0
+        before = pace.share
+    assert pace.share == 1.0
+
+
+@given(st.lists(SOME_WORK, min_size=1))
+def test_the_share_is_done_by_total_while_the_total_stays(parts):
+    """Whatever the steps; 1e-9 is the rounding of a hundred products."""
+    pace, done, total = Pace(), 0.0, sum(parts) + 1.0
+    for part in parts:
+        done += part
+        pace(done, total)
+        assert pace.share == pytest.approx(done / total, abs=1e-9)
+
+
+@pytest.mark.parametrize("path", RECORDED, ids=lambda path: path.stem)
+def test_a_real_job_tells_its_end_within_a_factor_of_two(path, monkeypatch):
+    """After a tenth of its time, until the middle; the share never falls."""
+    now = [0.0]
+    monkeypatch.setattr(COMPILING, "clock", lambda: now[0])
+    events = json.loads(path.read_text())
+    begun, end = (
+        next(one[1] for one in way if one[0] in ("report", "pace")) for way in (events, events[::-1])
+    )
+    work, pace, shares, told = Work(), Pace(), [0.0], []
+    for kind, *given_to in events:
+        if kind == "load":
+            work.loads[given_to[0]] = Load(*given_to[1:])
+        elif kind in ("report", "pace"):
+            now[0] = given_to[0]
+            pace(*(given_to[1:] or work.so_far(1)))
+            shares.append(pace.share)
+            if 0.1 < (now[0] - begun) / (end - begun) < 0.5 and pace.left is not None:
+                told.append(pace.left / (end - now[0]))
+        else:
+            getattr(work, kind)(*given_to)
+    assert shares == sorted(shares)
+    assert shares[-1] == 1.0
+    assert len(told) > 10
+    assert all(0.5 < one < 2.0 for one in told), (min(told), max(told), told[:5])
+
+
+def test_what_is_left_of_a_kind_goes_on_at_its_own_pace():
+    """Runs of one kind take ten times as long; its pace and that of all count alike, by one load each."""
+    work = Work()
+    work.loads.update(dict.fromkeys(("slow", "slow too", 1, 2), Load(10.0)))
+    for place, spent in (("slow", 10.0), (1, 1.0)):
+        work.spend(place, spent, 10.0)
+        work.finish(place)
+    done, total = work.so_far(1)
+    slow, fast = (10.0 + 5.5) / 20.0, (1.0 + 5.5) / 20.0
+    assert (done, total - done) == (11.0, pytest.approx(10.0 * slow + 10.0 * fast))  # rounding
