@@ -223,7 +223,8 @@ def of_friction(**known):
 
 
 def test_a_friction_whose_scatter_reaches_zero_is_log_normal():
-    """No draw of a friction is negative, and the mean stays the measured one."""
+    """No draw of a friction is negative, the mean stays the measured one; 0 without scatter is certain."""
+    assert uncertain_inputs(of_friction(mean=0.0)) == ()
     draws = sample(of_friction(mean=0.05, standard_deviation=0.02), 1024)
     assert draws.inputs[0].distribution.kind == "log-normal"
     assert draws.values.min() > 0.0
@@ -260,8 +261,3 @@ def test_what_cannot_be_drawn_is_refused(draw, words):
     """Too few, too many, or nothing uncertain; a zero that scatters; a friction known to ten powers of e."""
     with pytest.raises(InputError, match=words):
         draw()
-
-
-def test_a_friction_of_zero_without_scatter_is_certain():
-    """It is no input."""
-    assert uncertain_inputs(of_friction(mean=0.0)) == ()

@@ -72,15 +72,16 @@ def found(radial_load=0.0, **cage):
     return moving, dict(effects_on(solution, moving))
 
 
-def test_what_a_study_does_not_state_is_no_effect():
-    """The pockets of the shipped cage stop it, its balls are alike, and its lands have no width."""
+def test_what_a_study_states_is_left_out_and_a_land_that_stops_its_cage_widened():
+    """Fluid that moves with the cage, unequal balls, and their lead and lag under a radial load."""
+    # the pockets of the shipped cage stop it, its balls are alike, and its lands have no width
     assert found()[1] == {}
-
-
-def test_the_land_of_a_cage_that_it_stops_is_widened():
-    """To 1.6 times the clearance of the pocket."""
     cage, effects = found(land_clearance=1e-4)
     assert effects["wide_land"].values == {"land_clearance": WIDE * cage.pocket_clearance}
+    effects = found(added_mass=0.02, ball_diameter_scatter=1e-7, radial_load=500.0)[1]
+    assert [*effects] == ["fluid", "equal_balls", "even_orbits"]
+    assert effects["fluid"].values["added_mass"] == 0.0
+    assert effects["even_orbits"].values["orbital_cosines"] == ()
 
 
 @pytest.mark.parametrize(("width", "count"), [(14e-3, 1), (2e-3, 0)])
@@ -98,11 +99,3 @@ def test_the_fluid_of_a_land_is_put_in_where_it_counts(width, count):
         # 808 kg/m3 for the density of the library at the nearest temperature that it has
         assert fluid["added_mass"] == pytest.approx(mass, rel=1e-2)
         assert fluid["fluid_speed"] == 0.5 * cage.cage_speed  # halfway to an outer ring at rest
-
-
-def test_what_a_study_states_is_left_out():
-    """Fluid that moves with the cage, unequal balls, and their lead and lag under a radial load."""
-    effects = found(added_mass=0.02, ball_diameter_scatter=1e-7, radial_load=500.0)[1]
-    assert [*effects] == ["fluid", "equal_balls", "even_orbits"]
-    assert effects["fluid"].values["added_mass"] == 0.0
-    assert effects["even_orbits"].values["orbital_cosines"] == ()

@@ -130,11 +130,13 @@ def worn(draws=1, **given):
     return Worn(**{name: np.broadcast_to(one, draws).astype(float) for name, one in (values | given).items()})
 
 
-def test_nothing_that_wears_lives_for_ever():
-    """P(unstable) stays where it is."""
+def test_nothing_that_wears_lives_for_ever_and_what_is_unstable_from_the_start_has_no_life():
+    """P(unstable) stays where it is; what becomes so within the first step has some life."""
     found = course(PHASE, worn(), 1e9)
     assert np.ptp(found.probability_unstable) == 0.0
     assert np.isinf(lives(found)).all()
+    assert lives(course(PHASE, worn(pocket_friction=0.8), 1e6))[0] == 0.0
+    assert lives(course(PHASE, worn(film_wear=1e-6, pocket_friction=0.2), 1e6))[0] == 0.5
 
 
 def test_a_film_that_wears_ends_a_cage_when_its_critical_friction_is_reached():
@@ -226,12 +228,6 @@ def test_race_friction_is_the_mean_by_load():
     found = course([replace(PHASE[0], bearing=bearing)], worn(film_wear=1e-9), 1e6)
     whole = 0.4 - 0.35 * (1.0 - math.exp(-5.0))
     assert found.race_friction[-1, 0] == pytest.approx(0.75 * 0.4 + 0.25 * whole, rel=1e-6)
-
-
-def test_what_is_unstable_from_the_start_has_no_life():
-    """Before anything has worn; what becomes so within the first step has some."""
-    assert lives(course(PHASE, worn(pocket_friction=0.8), 1e6))[0] == 0.0
-    assert lives(course(PHASE, worn(film_wear=1e-6, pocket_friction=0.2), 1e6))[0] == 0.5
 
 
 def test_phases_of_a_duty_cycle_share_the_time():

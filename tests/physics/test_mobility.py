@@ -289,10 +289,7 @@ def test_a_bearing_that_turns_the_other_way_is_the_same():
     assert two.linear.rates == pytest.approx(one.linear.rates, rel=1e-6)
     assert two.force_forward[-8:] == pytest.approx(one.force_forward[-8:], rel=1e-6)
     assert one.force_forward[-8:] != pytest.approx(one.force_backward[-8:], rel=1e-2)
-
-
-def test_outer_ring_rotation():
-    """The outer ring turns: the ball settles, with as many positive rates."""
+    # the outer ring turns: the ball settles, with as many positive rates
     found = moved("cryo", inner_speed=0.0, outer_speed=study_of("cryo").operation.inner_speed).linear
     assert np.all(found.rates > 0.0)
     assert 0.0 < found.damping_relaxed <= found.damping

@@ -47,10 +47,7 @@ def test_the_safety_factor_is_the_ratio_of_two_frictions():
     wider = safety_factor(LIMIT, 0.125, (0.1, 0.15), 1.0)
     ends = math.hypot(math.log(0.8), math.log(1.2), 1.0)
     assert math.log(wider.safety_factor_low / 2.0) == pytest.approx(-ends)
-
-
-def test_beyond_what_was_searched_only_the_lower_end_is_known():
-    """Half the runs whirl at no friction up to 1: at the upper end of the friction S is above 1/0.3."""
+    # half the runs whirl at no friction up to 1: at the upper end of the friction S is above 1/0.3
     ends = {"own_critical_friction_low": 1.0, "own_critical_friction_high": None}
     found = safety_factor(replace(LIMIT, own_critical_friction=None, **ends), 0.2, (0.1, 0.3))
     assert found == SafetyFactor(safety_factor_low=1.0 / 0.3)

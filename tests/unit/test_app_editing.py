@@ -175,10 +175,7 @@ def test_a_list_with_comments_is_changed_in_the_text():
     assert draft.edited(text, "ranking", "materials", '["A", "B"]') == text
     found = draft.edited(text.replace(" # a", ""), "ranking", "materials", '["B", "C"]')
     assert found == '[ranking]\nmaterials = ["B", "C"] # both\n'
-
-
-def test_a_new_key_is_above_the_comment_of_the_next_section():
-    """The comment is about what follows it."""
+    # a comment is about what follows it: a new key is above that of the next section
     found = draft.edited('[cage]\nmass = "1 g"\n\n# worn\n[film]\n', "cage", "land_friction", "0.2")
     assert found == '[cage]\nmass = "1 g"\nland_friction = 0.2\n\n# worn\n[film]\n'
 

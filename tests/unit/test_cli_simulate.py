@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from cages import TURNING
 from commands import SMALL, document
 from matplotlib.figure import Figure
 from scipy.integrate import quad
@@ -15,6 +16,7 @@ import separatrix
 from separatrix.cage import run_ensemble, settings_for
 from separatrix.front import main
 from separatrix.ground.document import Part
+from separatrix.ground.plain_data import plain
 from separatrix.present import draw, view
 from separatrix.present.view import A_TURN, AROUND, MOST_FRAMES, frame_moments, scene
 from separatrix.verbs.parts import run_pictures
@@ -105,8 +107,8 @@ def test_what_only_space_has_is_null_in_the_plane(answered):
     assert sum(found[f"{side}_share"] for side in ("front", "rear", "axial")) == pytest.approx(1.0)
 
 
-def test_peaks_of_the_samples_are_near_those_of_the_engine(data):
-    """Of a short run every other step is a sample, or each."""
+def test_samples_have_the_peaks_of_the_engine_and_a_balance_of_work_and_energy(data):
+    """Every other step of a short run is a sample, or each; energy is that of the start and work since."""
     for sampled, counted in (
         ("contact_force", "largest_contact_force"),
         ("land_force", "largest_land_force"),
@@ -115,6 +117,10 @@ def test_peaks_of_the_samples_are_near_those_of_the_engine(data):
         assert 0.98 * most <= float(data[sampled].max()) <= most * (1.0 + 1e-6)
     offset = float(np.hypot(*data["position"].values.T).max())
     assert offset == pytest.approx(float(data["largest_offset"]), rel=1e-3)
+    energy = data["kinetic_energy"].values + data["stored_energy"].values
+    work = sum(data[name].values for name in data.data_vars if str(name).startswith("work_"))
+    # to the error of a step
+    assert energy - energy[0] == pytest.approx(work - work[0], abs=3e-3 * float(energy.max()))
 
 
 def swept(time, place, rate):
@@ -139,13 +145,6 @@ def test_whirl_of_the_samples_is_that_of_the_engine(answered):
     if answer.cage.is_in_space:
         cone = swept(run.time[part], run.lean[part], run.lean_rate[part])
         assert run.cone_speed == pytest.approx(cone + turn, abs=2.5e-4 * turn)
-
-
-def test_work_and_energy_balance_in_the_samples(data):
-    """Energy at each sample is that of the start and the work since then, to the error of a step."""
-    energy = data["kinetic_energy"].values + data["stored_energy"].values
-    work = sum(data[name].values for name in data.data_vars if str(name).startswith("work_"))
-    assert energy - energy[0] == pytest.approx(work - work[0], abs=3e-3 * float(energy.max()))
 
 
 def test_a_whirl_is_followed_for_fifty_turns_and_its_force_means_nothing_beyond_the_races(folder):
@@ -225,22 +224,9 @@ def run(samples=4, *, count=5, guidance="outer", play=0.6e-3, space=False, whirl
     document = {name: value.tolist() for name, value in values.items()}
     document |= {"judged_from": 0.0, "followed": 0.0, "force_limit": None, "whirl_frequency": None}
     document["study"] = {"cage": {"width": {"value": None}}}
-    document["cage"] = {
-        "pitch_radius": 0.0325,
-        "cage_speed": 600.0,
-        "ball_diameter": 0.0111,
-        "guidance": guidance,
-        "land_clearance": clearance,
-        "land_out_of_round": 0.0,
-        "land_lobes": 2,
-        "land_count": 1,
-        "land_spacing": None,
-        "land_width": 3e-3,
-        "ramp_time": 0.0,
-        "ramp_start": 0.1,
-        "pocket_shape": "square",
-        "axial_half_play": 0.5 * play if space else None,
-    } | cage
+    own = {"cage_speed": 600.0, "ball_diameter": 0.0111, "land_width": 3e-3, "guidance": guidance}
+    own |= {"land_clearance": clearance, "axial_half_play": 0.5 * play if space else None}
+    document["cage"] = plain(TURNING, left_out=[]) | own | cage
     return Part(document, dict.fromkeys(LENGTHS, "m") | {"largest_tilt": "rad", "time": "s"})
 
 
@@ -307,10 +293,7 @@ def test_the_force_of_a_frame_is_the_largest_since_the_one_before():
     forces = np.zeros((6, 1))
     forces[2] = 7.0
     assert view._largest_since(forces, np.array([0, 3, 5])).ravel().tolist() == [0.0, 7.0, 0.0]
-
-
-def test_a_course_in_time_keeps_its_extremes():
-    """Of many samples the least and the largest of each part are drawn, with the first and the last."""
+    # of a course in time the least and the largest of each part are drawn, with the first and the last
     values = np.zeros(20_000)
     values[[7, 11_111]] = 3.0, -2.0
     places = run_pictures.thinned(values)

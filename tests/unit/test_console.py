@@ -129,7 +129,7 @@ def test_an_interrupt_is_one_line_and_status_130(tmp_path):
 
 
 def test_life_is_shown_where_there_is_no_terminal(monkeypatch, capsys):
-    """A plain line now and then with how far the work is, by the clock: the work itself need not speak."""
+    """A plain line now and then with how far the work is, by the clock; quiet is quiet."""
     monkeypatch.setattr(console, "LINE_EVERY", 0.02)
     before = threading.active_count()
     with console.progress_bar("rank case", quiet=False) as life:
@@ -140,6 +140,10 @@ def test_life_is_shown_where_there_is_no_terminal(monkeypatch, capsys):
     assert lines[0].startswith("separatrix: rank case: at work for 0.0")
     assert "separatrix: rank case: 25 % after 0." in lines[-1]
     assert threading.active_count() == before
+    with console.progress_bar("rank case", quiet=True) as life:
+        life(50, 100)
+        time.sleep(0.1)
+    assert capsys.readouterr() == ("", "")
 
 
 def test_nothing_is_estimated_before_a_tenth_nor_of_unknown_work(monkeypatch):
@@ -170,15 +174,6 @@ def test_compilation_is_told_once(capsys):
     )
     assert gc.isenabled()
     assert COMPILING.heard == []
-
-
-def test_quiet_is_quiet(monkeypatch, capsys):
-    """No bar, no line, and nothing is timed to be said."""
-    monkeypatch.setattr(console, "LINE_EVERY", 0.01)
-    with console.progress_bar("rank case", quiet=True) as life:
-        life(50, 100)
-        time.sleep(0.05)
-    assert capsys.readouterr() == ("", "")
 
 
 def write_half(folder: Path) -> None:

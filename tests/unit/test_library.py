@@ -370,15 +370,12 @@ def test_a_study_that_names_a_wrong_record_is_refused_in_one_line(what, tmp_path
     assert words in refusal(written(tmp_path, case, "case.toml"))
 
 
-def test_a_study_beside_a_wrong_library_is_refused_for_the_library(tmp_path):
-    """Even if it names nothing in it: what would have been replaced is not known."""
+def test_a_study_beside_wrong_libraries_is_refused_for_them(tmp_path):
+    """Even if it names nothing in them: what would have been replaced is not known."""
     written(tmp_path, MATERIAL.replace("5 GPa", "5 mm"), "materials.toml")
     line = refusal_line(written(tmp_path, 'extends = "cryogenic-turbopump"\n'))
     assert line.startswith("materials.toml, line 2: [cage_material] Ours.elastic_modulus")
-
-
-def test_one_name_in_two_libraries_is_refused(tmp_path):
-    """Which one was meant is not guessed; both places are named."""
+    # of one name in two libraries it is not guessed which one was meant
     for name in ("materials.toml", "more.toml"):
         written(tmp_path, MATERIAL, name)
     line = refusal_line(written(tmp_path, 'library = "more.toml"\nextends = "cryogenic-turbopump"\n'))

@@ -231,10 +231,7 @@ def test_verdict_and_probability_are_those_of_the_worst_kick():
         assert result.reason.startswith(f"94 % of the runs from {result.worst_kick:g} m/s whirl")
         assert [count.settles for count in result.by_kick] == [1 if i == worst else 16 for i in range(3)]
         assert [count.whirls for count in result.by_kick] == [15 if i == worst else 0 for i in range(3)]
-
-
-def test_a_whirl_that_is_sure_comes_before_one_that_is_not():
-    """A kick from which fewer settle, but less than half whirl for sure, is not the worst."""
+    # a kick from which fewer settle, but less than half whirl for sure, is not the worst
     mixed = [WHIRLS] * 8 + [UNRESOLVED] * 8
     result = judge(CAGE, ensemble([mixed, [WHIRLS] * 13 + [SETTLES] * 3]))
     assert (result.verdict, result.worst_kick) == (UNSTABLE, 0.5)
