@@ -209,15 +209,10 @@ def test_an_orbit_is_that_of_a_bearing_of_larger_balls_with_its_rings_there(mode
     _, wanted = place(one, span, at.axial_load)
     speeds = []
     for ratio in (1.0 - 1e-5, 1.0 + 1e-5):
-        conformities = one.inner_conformity / ratio, one.outer_conformity / ratio
-        larger = (sum(conformities) - 1.0) * ratio * one.ball_diameter
-        bearing = replace(
-            one,
-            ball_diameter=ratio * one.ball_diameter,
-            inner_conformity=conformities[0],
-            outer_conformity=conformities[1],
-            contact_angle=math.acos(span * math.cos(one.contact_angle) / larger),
-        )
+        grooves = {name: getattr(one, name) / ratio for name in ("inner_conformity", "outer_conformity")}
+        larger = (sum(grooves.values()) - 1.0) * ratio * one.ball_diameter
+        angle = math.acos(span * math.cos(one.contact_angle) / larger)
+        bearing = replace(one, ball_diameter=ratio * one.ball_diameter, contact_angle=angle, **grooves)
         load = brentq(lambda F: place(bearing, larger, F)[1] - wanted, 2500.0, 3500.0, xtol=1e-6)  # noqa: B023
         speeds.append(place(bearing, larger, load)[0].orbital_speed[0] * one.pitch_diameter / 2.0)
     by_load = (speeds[1] - speeds[0]) / (2e-5 * one.ball_diameter)

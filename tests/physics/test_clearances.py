@@ -29,15 +29,6 @@ STEEL = replace(BEARING.ring_material, expansions=(), thermal_expansion=10e-6)
 PLASTIC = Material(
     name="plastic", elastic_modulus=5e9, poisson_ratio=0.35, density=1500.0, thermal_expansion=40e-6
 )
-RING = {"density": 1500.0, "elastic_modulus": 5e9, "poisson_ratio": 0.35, "speed": 2000.0}
-
-
-def ring_growth(radius, *, inner, outer, density, elastic_modulus, poisson_ratio, speed):
-    """Growth of a ring of a material of these numbers."""
-    material = Material(name="ring", elastic_modulus=elastic_modulus, poisson_ratio=poisson_ratio)
-    ring = TurningRing(inner=inner, outer=outer, material=material, density=density, speed=speed)
-    return ring.growth(radius)
-
 
 SHAPE = {"inner_diameter": 58e-3, "outer_diameter": 72e-3, "width": 14e-3}
 
@@ -81,7 +72,9 @@ def test_pocket_and_land_by_hand():
 
 def test_thick_ring_solves_its_differential_equation():
     """R u'' + u' - u/r = -(1 - nu^2) rho w^2 r^2 / E with free edges, by collocation."""
-    (rho, E, nu, w), a, b = RING.values(), 0.02, 0.03
+    E, nu, rho, w = PLASTIC.elastic_modulus, PLASTIC.poisson_ratio, PLASTIC.density, 2000.0
+    ring = TurningRing(inner=0.02, outer=0.03, material=PLASTIC, density=rho, speed=w)
+    a, b = ring.inner, ring.outer
     scale = rho * w**2 * b**3 / E
 
     def slope(r, y):
@@ -92,7 +85,7 @@ def test_thick_ring_solves_its_differential_equation():
 
     r = np.linspace(a, b, 21)
     solved = solve_bvp(slope, free, r, np.ones((2, r.size)), tol=1e-9)
-    found = [ring_growth(x, inner=a, outer=b, **RING) / scale for x in r]
+    found = [ring.growth(x) / scale for x in r]
     assert solved.sol(r)[0] == pytest.approx(found, rel=1e-7)
 
 

@@ -85,9 +85,8 @@ def test_a_settled_cage_is_heard_where_it_turns_off_the_axis(whirling):
     settled = replace(history, outcome=RunOutcome.SETTLES, cause=None)
     line, share = heard(cage, circle(settled, 0.0, 40.0 / own))
     assert abs(math.log2(line / own)) <= 1.0 / 6.0
-    assert (
-        share > 0.9
-    )  # forty turns, of which a window of 20 leaves its main lobe: 4 lines of some 5 in the band
+    # forty turns, of which a window of 20 leaves its main lobe: 4 lines of some 5 in the band
+    assert share > 0.9
     assert heard(cage, circle(settled, -0.5 * own, 40.0 / own)) == (None, None)
     assert heard(cage, replace(settled, position=0.0 * settled.position)) == (None, None)
 

@@ -205,6 +205,12 @@ signed = st.tuples(size, st.sampled_from([-1.0, 1.0])).map(lambda t: t[0] * t[1]
 quick = settings(max_examples=40)
 
 
+def toeplitz(nodes, lam):
+    """The matrix of the stick equations, written out."""
+    i = np.arange(nodes)
+    return strip_influence(nodes, lam)[i[:, None] - i[None, :] + nodes - 1]
+
+
 def creep_of(spin, heathcote=0.0):
     """Creep whose parts at the ends of the ellipse are these multiples of xi_s at friction 0.1."""
     return Creep(spin=spin * 0.1 * XI / A, curvature=heathcote * 0.1 * XI / A**2)
@@ -284,9 +290,7 @@ def test_coulombs_law_holds_on_every_element(level, lam, tilt, bulge):
     x = 1.0 - (2.0 * np.arange(nodes) + 1.0) / nodes
     course = level + tilt * x + bulge * np.sqrt(1.0 - x * x)
     strip = solve_strip(course, lam, nodes=nodes)
-    i = np.arange(nodes)
-    matrix = strip_influence(nodes, lam)[i[:, None] - i[None, :] + nodes - 1]
-    rest = 4.0 * course / nodes - matrix @ strip.shear
+    rest = 4.0 * course / nodes - toeplitz(nodes, lam) @ strip.shear
     stuck = strip.slip == 0.0
     assert np.all(np.abs(strip.shear) <= strip.pressure * (1.0 + 1e-11))  # the solver's own tolerance
     assert np.abs(rest[stuck]).max(initial=0.0) < 1e-9  # rounding times condition
@@ -360,12 +364,6 @@ def test_least_index_steps_end_too(monkeypatch):
 
 
 # One strip: Carter's solution, the film's limits, Coulomb's law, and the same traction by other roads.
-
-
-def toeplitz(nodes, lam):
-    """The matrix of the stick equations, written out."""
-    i = np.arange(nodes)
-    return strip_influence(nodes, lam)[i[:, None] - i[None, :] + nodes - 1]
 
 
 def table_value(creep, lam):

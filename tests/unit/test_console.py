@@ -38,11 +38,12 @@ def run(*arguments: str, **options) -> subprocess.CompletedProcess:
 
 
 def test_help_names_every_verb_in_the_order_of_the_chain():
-    """`--help` answers with status 0 and lists the verbs; nothing on standard error."""
+    """It answers with status 0, nothing on standard error; `--version` is a line with name and version."""
     done = run("--help")
     assert (done.returncode, done.stderr) == (0, "")
     found = re.findall(r"^  (\w+)  +\w", done.stdout.partition("Commands:")[2], re.MULTILINE)
     assert found == ["demo", *VERBS]
+    assert re.fullmatch(r"separatrix \d+\.\d+\.\d+\S*\n", run("--version").stdout)
 
 
 @pytest.mark.parametrize("verb", VERBS)
@@ -52,12 +53,6 @@ def test_each_verb_has_help(verb, capsys):
     said = capsys.readouterr().out
     common = ("--json", "--out", "--quiet", "--jobs") if "STUDY" in said else ("separatrix",)
     assert all(option in said for option in common)
-
-
-def test_version_is_one_line():
-    """`--version` says name and version."""
-    done = run("--version")
-    assert re.fullmatch(r"separatrix \d+\.\d+\.\d+\S*\n", done.stdout)
 
 
 def test_a_reader_that_goes_away_is_no_error():
@@ -168,10 +163,8 @@ def test_compilation_is_told_once(capsys):
     kernels = [part(lambda x: x + 1.0), part(lambda x: x + 2.0)]
     with console.progress_bar("rank case", quiet=False):
         assert [kernel(1.0) for kernel in kernels] == [2.0, 3.0]
-    assert (
-        capsys.readouterr().err
-        == "separatrix: rank case: the solver is compiled once on this machine, about a minute in all.\n"
-    )
+    line = "separatrix: rank case: the solver is compiled once on this machine, about a minute in all.\n"
+    assert capsys.readouterr().err == line
     assert gc.isenabled()
     assert COMPILING.heard == []
 

@@ -97,16 +97,10 @@ def judged(verdict, *settles, runs=64):
     """As a judgement: its verdict, counts by kick (the rest whirling) and worst kick."""
     known = dict.fromkeys(("drifts", "unresolved", "kept_by_land"), 0)
     known |= {"probability_low": 0.0, "probability_high": 1.0}
+    ends = [{"settles": n - n // 2, "rolls": n // 2, "whirls": runs - n} for n in settles]
     found = tuple(
-        KickCount(
-            kick=0.1 * (1 + i),
-            settles=n - n // 2,  # the other half rolls
-            rolls=n // 2,
-            whirls=runs - n,
-            probability_stable=n / runs,
-            **known,
-        )
-        for i, n in enumerate(settles)
+        KickCount(kick=0.1 * (1 + i), probability_stable=1.0 - one["whirls"] / runs, **one, **known)
+        for i, one in enumerate(ends)
     )
     worst = min(found, key=lambda one: one.calm)
     return Judged(verdict, found, worst.kick)

@@ -260,9 +260,8 @@ def test_the_paper_differs_by_the_motion_too(motion):
 def test_a_map_says_what_is_next_to_the_study_and_where_it_changes():
     """The nearest point with its runs, and both ends of a change in its column."""
     words = nearest_words(mapped())
-    assert words.startswith(
-        "The point next to the study: film thickness 1 \N{MICRO SIGN}m, race friction 0.3: "
-    )
+    place = "film thickness 1 \N{MICRO SIGN}m, race friction 0.3"
+    assert words.startswith(f"The point next to the study: {place}: ")
     assert words.endswith("the cage begins to whirl between race friction 0.1 and 0.3.")
     assert nearest_words(mapped(changes=[])).endswith("6 runs.")
     assert [*unchanged(mapped(changes=[]))] == []
@@ -274,11 +273,8 @@ def test_every_point_of_a_map_has_its_values_to_point_at():
     """Values and reason stand at each cell, upward in y; what has no share is a gap, a refusal hatched."""
     cells, hatched = map_figure(mapped()).panels[0].marks[:2]
     assert cells.values == [[0.0, None], [1.0, None]]
-    assert cells.hover[1][
-        0
-    ] == "film thickness 1 \N{MICRO SIGN}m, race friction 0.3: UNSTABLE; share that " + (
-        "whirls 1 (0.7 to 1), 6 runs"
-    )
+    there = "film thickness 1 \N{MICRO SIGN}m, race friction 0.3: UNSTABLE; "
+    assert cells.hover[1][0] == f"{there}share that whirls 1 (0.7 to 1), 6 runs"
     assert cells.hover[0][1].endswith("too thin")
     assert hatched.where == [[False, True], [False, False]]
 

@@ -385,13 +385,9 @@ def test_a_click_in_a_figure_is_at_the_values_of_its_axes():
     assert up.low + (up.high - up.low) * share == pytest.approx(0.25, rel=1e-3)
 
 
-def test_a_notebook_shows_the_page(answers):
-    """An answer is its page in a notebook."""
-    assert "<h1>" in answers("bearing")._repr_html_()
-
-
 def test_uncertain_inputs_are_said_to_be_at_their_means(answers):
-    """By verbs that do not draw them."""
+    """By verbs that do not draw them; in a notebook an answer is its page."""
+    assert "<h1>" in answers("bearing")._repr_html_()
     assert "at their means: bearing.contact_angle" in answers("bearing").summary()
     assert "at their means" not in answers("sensitivity").summary()
 

@@ -242,10 +242,8 @@ def test_resolved_inputs_are_plain_and_say_where_each_number_comes_from():
         "origin": 'cryogenic-turbopump.toml, line 7: "11.1125 mm"',
     }
     assert inputs["operation"]["outer_speed"] == {"value": 0.0, "unit": "rad/s", "origin": "default"}
-    assert (
-        inputs["cage"]["moment_of_inertia"]["origin"]
-        == "default: of the ring's shape, or a thin ring at the pitch diameter"
-    )
+    inertia = "default: of the ring's shape, or a thin ring at the pitch diameter"
+    assert inputs["cage"]["moment_of_inertia"]["origin"] == inertia
     assert inputs["stability"]["runs"]["origin"] == "default"
     assert inputs["film"]["material"]["confidence"] == "modulus: guess, Poisson's ratio: guess"
     armalon = next(c for c in inputs["ranking"]["candidates"] if c["name"] == "Armalon")

@@ -299,9 +299,8 @@ def test_what_stands_beside_the_numbers_is_kept(tmp_path):
     assert "comma, decimal comma" in read(tmp_path, lines('"t, s","mu"', '"{T}","{F}"')).format
     assert (read(tmp_path, GAPS).rows, np.isnan(read(tmp_path, GAPS).temperature).sum()) == (ROWS, 5)
     code = csv({"time [s]": TIME, "COF": FRICTION, "temp [C]": np.where(TIME == 1.25, -9.0, 20.0)})
-    assert (
-        np.nanmin(read(tmp_path, code).temperature) == 264.15
-    )  # a number until the map says that it is none
+    # a number until the map says that it is none
+    assert np.nanmin(read(tmp_path, code).temperature) == 264.15
     known = column_map({"format": {"missing": ["-9"]}})
     assert np.isnan(read(tmp_path, code, known).temperature).sum() == 1
 

@@ -317,25 +317,17 @@ def test_a_leaning_axis_and_gravity_along_it_drive_in_space():
 
 def test_evidence_is_the_worst_of_forces_and_offsets_and_the_median_of_the_rest():
     """Largest of the largest over all kicks, among them what a ledger leaves open; medians at the worst."""
-    result = judge(
-        GUIDED,
-        ensemble(
-            [[SETTLES] * 3, [SETTLES, SETTLES, WHIRLS]],
-            largest_offset=[[1e-4, 3e-4, 2e-4], [1e-4] * 3],
-            mean_offset=[[9e-4] * 3, [1e-4, 2e-4, 3e-4]],
-            offset_spread=[[9e-4] * 3, [5e-5, 2e-5, 3e-5]],
-            largest_land_force=[[5.0, 70.0, 6.0], [1.0] * 3],
-            largest_contact_force=[[50.0, 7.0, 6.0], [1.0] * 3],
-            energy_imbalance=[[1e-12, 0.0, 1e-3], [0.0] * 3],
-            end_energy=[[9.0] * 3, [1e-6, 4e-3, 2e-6]],
-            pocket_power=[[9.0] * 3, [-1.0, -1.0, 4.0]],
-            land_power=[[9.0] * 3, [-1.0, -1.0, 0.5]],
-            rubbing_force=[[9.0] * 3, [2.0, 4.0, 70.0]],
-            rubbing_speed=[[9.0] * 3, [1.0, 2.0, 50.0]],
-            followed=[[0.1, 0.2, 1.2], [0.3] * 3],
-            strike_rate=[[9.0] * 3, [100.0, 300.0, 700.0]],
-        ),
-    )
+    runs = ensemble(
+        [[SETTLES] * 3, [SETTLES, SETTLES, WHIRLS]],
+        largest_offset=[[1e-4, 3e-4, 2e-4], [1e-4] * 3], mean_offset=[[9e-4] * 3, [1e-4, 2e-4, 3e-4]],
+        offset_spread=[[9e-4] * 3, [5e-5, 2e-5, 3e-5]], largest_land_force=[[5.0, 70.0, 6.0], [1.0] * 3],
+        largest_contact_force=[[50.0, 7.0, 6.0], [1.0] * 3], energy_imbalance=[[1e-12, 0.0, 1e-3], [0.0] * 3],
+        end_energy=[[9.0] * 3, [1e-6, 4e-3, 2e-6]], pocket_power=[[9.0] * 3, [-1.0, -1.0, 4.0]],
+        land_power=[[9.0] * 3, [-1.0, -1.0, 0.5]], rubbing_force=[[9.0] * 3, [2.0, 4.0, 70.0]],
+        rubbing_speed=[[9.0] * 3, [1.0, 2.0, 50.0]], followed=[[0.1, 0.2, 1.2], [0.3] * 3],
+        strike_rate=[[9.0] * 3, [100.0, 300.0, 700.0]],
+    )  # fmt: skip
+    result = judge(GUIDED, runs)
     assert result.impact_rate == 200.0
     assert (result.largest_tilt, result.axial_travel, result.cone_ratio) == (None, None, None)
     assert (result.energy_imbalance, result.longest_run) == (1e-3, 1.2)
