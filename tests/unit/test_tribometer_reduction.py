@@ -314,7 +314,7 @@ def test_way_by_speed_and_time():
 
 def test_a_depth_that_only_drifts_with_heat_is_said():
     """A pin that grows longer, or noise alone, is no wear; the test has a flag."""
-    for depth in (-1e-9 * TIME, 1e-7 * NOISE):
+    for depth in (-1e-9 * TIME, 1e-7 * NOISE, -1e-7 * NOISE):
         found = reduce_log(replace(LOG, wear_depth=depth))
         assert found.wear.wear_coefficient is None
         assert NO_GROWTH in found.flags
