@@ -6,11 +6,7 @@ from playwright.sync_api import expect
 
 from conftest import PATIENCE, run
 
-SIZES = {
-    "light": {},
-    "dark": {"dark": True},
-    "tablet": {"width": 820, "height": 1180},
-}
+SIZES = {"light": {}, "dark": {"dark": True}, "tablet": {"width": 820, "height": 1180}}
 GRAVE = ("serious", "critical")
 
 
@@ -39,11 +35,7 @@ def views(folder, server, browser) -> list[str]:
     run(page, "stability")
     page.context.close()
     own = ("study", "answer/rank", "answer/stability", "answer/simulate", "files")
-    views = [
-        "",
-        *(f"{one}/small.toml" for one in own),
-        *(f"study/{one}.toml" for one in studies),
-    ]
+    views = ["", *(f"{one}/small.toml" for one in own), *(f"study/{one}.toml" for one in studies)]
     return [*views, "answer/simulate/tilting.toml", "logs", "study/none.toml"]
 
 

@@ -10,8 +10,7 @@ from pathlib import Path
 import numpy as np
 
 import separatrix
-from separatrix.cage import MovingCage, moving_cage, run_ensemble
-from separatrix.chain.ball_traction import BallTraction
+from separatrix import BallTraction, MovingCage, moving_cage, run_ensemble
 from separatrix.study.study import BallModel, MotionModel, StabilitySettings
 
 sys.path.append(str(Path(__file__).parent / "physics"))

@@ -93,7 +93,6 @@ def test_the_examples_of_a_docstring_print_what_they_say(path):
 
 # The notebooks of the documentation run from start to end, and are stored without what they print.
 
-
 NOTEBOOKS = sorted((Path(__file__).parents[2] / "docs" / "notebooks").glob("*.ipynb"))
 
 

@@ -110,15 +110,13 @@ def test_traction_curve():
 
 
 def test_fastsim():
-    """Fy -0.625 +- 0.001 mu N, Mz -47 440 N mm, extrapolated from 30 and 60 cells.
-
-    Half the step between the two, 0.002 mu N and 0.2 %, and the reference's own: 0.003 and 0.4 %.
-    """
+    """Fy -0.625 +- 0.001 mu N, Mz -47 440 N mm, extrapolated from 30 and 60 cells."""
     one = problem(ellipse_of_axes(82000.0, 8.0 * MM, 4.0 * MM, modulus(STEEL)), STEEL, 0.3)
     found = []
     for cells in (30, 60):
         at = solved(rolling_contact(one, columns=cells, rows=cells), lateral=-0.000625, spin=-0.625)
         found.append(np.array([at.lateral_force / (0.3 * 82000.0), 1e3 * at.spin_moment]))
     force, moment = 2.0 * found[1] - found[0]
+    # Half the step between the two, 0.002 mu N and 0.2 %, and the reference's own: 0.003 and 0.4 %.
     assert force == pytest.approx(-0.625, abs=3e-3)
     assert moment == pytest.approx(-47440.0, rel=4e-3)

@@ -21,15 +21,9 @@ from separatrix.study.study import BallBearing, KinematicModel, Material, Operat
 
 STEEL = Material(name="steel", elastic_modulus=208e9, poisson_ratio=0.3, density=7800.0)
 SIZE_7210B = BallBearing(
-    ball_diameter=12.7e-3,
-    pitch_diameter=70e-3,
-    ball_count=16,
-    contact_angle=math.radians(40.0),
-    inner_conformity=0.52,
-    outer_conformity=0.52,
-    ball_material=STEEL,
-    ring_material=STEEL,
-)
+    ball_diameter=12.7e-3, pitch_diameter=70e-3, ball_count=16, contact_angle=math.radians(40.0),
+    inner_conformity=0.52, outer_conformity=0.52, ball_material=STEEL, ring_material=STEEL,
+)  # fmt: skip
 OPERATION = Operation(inner_speed=10_000.0 * math.pi / 30.0, axial_load=2000.0)
 
 

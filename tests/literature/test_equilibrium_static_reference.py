@@ -35,15 +35,10 @@ def solved(row: dict[str, str]) -> tuple[Equilibrium, float]:
     angle = math.acos(1.0 - float(row["radial_clearance_mm"]) / 1e3 / (2.0 * span))
     steel = Material(name="steel", elastic_modulus=float(row["E_MPa"]) * 1e6, poisson_ratio=float(row["nu"]))
     bearing = BallBearing(
-        ball_diameter=D,
-        pitch_diameter=float(row["Dpw_mm"]) / 1e3,
-        ball_count=int(row["Z"]),
-        contact_angle=angle,
-        inner_conformity=float(row["ri_over_Dw"]),
-        outer_conformity=float(row["re_over_Dw"]),
-        ball_material=steel,
-        ring_material=steel,
-    )
+        ball_diameter=D, pitch_diameter=float(row["Dpw_mm"]) / 1e3, ball_count=int(row["Z"]),
+        contact_angle=angle, inner_conformity=float(row["ri_over_Dw"]),
+        outer_conformity=float(row["re_over_Dw"]), ball_material=steel, ring_material=steel,
+    )  # fmt: skip
     nothing = 1e-9  # an operation needs some load of its own; B6 has its moment about the other axis
     operation = Operation(
         inner_speed=0.0,

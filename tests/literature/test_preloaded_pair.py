@@ -21,15 +21,9 @@ from separatrix.study.study import Arrangement, BallBearing, KinematicModel, Mat
 
 STEEL = Material(name="440C", elastic_modulus=200e9, poisson_ratio=0.285)
 SIZE_7004 = BallBearing(
-    ball_diameter=5.556e-3,
-    pitch_diameter=31e-3,
-    ball_count=12,
-    contact_angle=math.radians(25.0),
-    inner_conformity=0.56,
-    outer_conformity=0.56,
-    ball_material=STEEL,
-    ring_material=STEEL,
-)
+    ball_diameter=5.556e-3, pitch_diameter=31e-3, ball_count=12, contact_angle=math.radians(25.0),
+    inner_conformity=0.56, outer_conformity=0.56, ball_material=STEEL, ring_material=STEEL,
+)  # fmt: skip
 MODEL = KinematicModel.FREE, 0.1
 
 

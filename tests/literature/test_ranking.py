@@ -12,10 +12,8 @@ from dataclasses import replace
 
 import pytest
 
+from separatrix import Runner, StabilitySettings, read_study
 from separatrix.chain.impact_restitution import SOLID_LUBRICATION_LIMIT
-from separatrix.study.reading import read_study
-from separatrix.study.study import StabilitySettings
-from separatrix.verdict.long_jobs import Runner
 from separatrix.verdict.ranking import rank
 from separatrix.verdict.ranking_records import NotMeasured, Ranked
 

@@ -14,9 +14,7 @@ from pathlib import Path
 
 import pytest
 
-from separatrix.chain.creep import Creep
-from separatrix.chain.hertz import ellipse_of_axes
-from separatrix.chain.traction_curve import traction_slope
+from separatrix import Creep, ellipse_of_axes, traction_slope
 
 TABLE = Path(__file__).parent / "sources" / "kalker_c11.csv"
 

@@ -6,11 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from separatrix.cage import Cause, Ensemble, History, MovingCage, RunOutcome
+from separatrix import BallTraction, Cause, Ensemble, History, MovingCage, RunOutcome
 from separatrix.cage.closed_forms import felt_mass, whirl_rate
 from separatrix.cage.course import follow_start
 from separatrix.cage.disturbance import Starts
-from separatrix.chain.ball_traction import BallTraction
 from separatrix.study.distribution import Distribution
 from separatrix.study.keys import settled_in, with_values
 from separatrix.study.study import BallBearing, Guidance, Material, MotionModel, PocketShape, Study

@@ -4,12 +4,11 @@ import math
 
 import numpy as np
 
+from separatrix import Body, ContactEllipse, Layer, Solid
 from separatrix.chain.exact.grid import Grid
-from separatrix.chain.exact.influence import Body, Layer, Solid
 from separatrix.chain.exact.operator import rolling_operator
 from separatrix.chain.exact.rolling import ContactProblem, rigid_slip, rolling_contact, solve
 from separatrix.chain.exact.slip import FrictionLaw, settle
-from separatrix.chain.hertz import ContactEllipse
 
 MU = 0.1
 P0 = 1e-3  # over G

@@ -12,11 +12,9 @@ from typing import NamedTuple
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from separatrix.cage import MovingCage
+from separatrix import BallTraction, Guidance, MovingCage, PocketShape
 from separatrix.cage.closed_forms import rebound_damping
-from separatrix.chain.ball_traction import BallTraction
 from separatrix.ground.units import Array
-from separatrix.study.study import Guidance, PocketShape
 
 SMOOTH = 1e-4
 """Sliding on the land below which its friction is in proportion to it, for the integrator [m/s]."""

@@ -130,16 +130,13 @@ def _recipe(kind: tuple[int, ...], rng: np.random.Generator) -> Recipe:
     correlation, run_in, drift, missing, rows, sampling = kind
     friction = float(rng.uniform(0.05, 0.35))
     base = Recipe(
-        rows=int(ROWS[rows] * rng.uniform(1.0, 1.3)) if ROWS[rows] < 20000 else 20000,
-        friction=friction,
-        noise=friction * float(rng.choice([0.03, 0.1, 0.2])),
-        correlation=CORRELATIONS[correlation],
+        rows=int(ROWS[rows] * rng.uniform(1.0, 1.3)) if ROWS[rows] < 20000 else 20000, friction=friction,
+        noise=friction * float(rng.choice([0.03, 0.1, 0.2])), correlation=CORRELATIONS[correlation],
         run_in=RUN_INS[run_in] * float(rng.uniform(0.8, 1.0)),
         excess=friction * float(rng.choice([-0.4, 0.3, 1.0, 2.0])),
         drift=friction * DRIFTS[drift % 2] * float(rng.choice([-1.0, 1.0])),
         modulation=friction * float(rng.choice([0.0, 0.1, 0.25])),
-        rows_of_a_cycle=float(rng.uniform(5.0, 14.0)),
-        missing=MISSING[missing % 2],
+        rows_of_a_cycle=float(rng.uniform(5.0, 14.0)), missing=MISSING[missing % 2],
         irregular=bool(sampling % 2),
-    )
+    )  # fmt: skip
     return replace(base, white=0.5 * base.noise if sampling > 1 else 0.0)

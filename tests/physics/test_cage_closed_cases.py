@@ -15,13 +15,11 @@ from mobile_balls import impact
 from scipy.integrate import solve_ivp
 from scipy.special import ellipk
 
-from separatrix.cage import MovingCage
+from separatrix import BallTraction, Guidance, MovingCage
 from separatrix.cage.closed_forms import rebound, rebound_damping, returned_share
 from separatrix.cage.numbers import numbers_of
 from separatrix.cage.rows import PIVOT, of
-from separatrix.chain.ball_traction import BallTraction
 from separatrix.chain.impact_restitution import damping_for
-from separatrix.study.study import Guidance
 
 M, R = AT_REST.mass, AT_REST.pitch_radius
 CRYO = BallTraction(mass=6.567e-3, slope=188.0, speed=73.0 / 188.0)
@@ -85,10 +83,8 @@ def test_friction_of_an_impact_is_a_share_of_its_impulse(outer):
 
 
 def test_a_hertz_impact_has_the_force_and_the_time_of_the_closed_form():
-    """5.496616 g at 0.5 m/s on K 5e8: 66.15387 N for 152.8449 us (numbers of dynamics3d.md, E7).
-
-    Cage and ball have twice the mass each, which makes that mass of the pair, and trade their speeds.
-    """
+    """5.496616 g at 0.5 m/s on K 5e8: 66.15387 N for 152.8449 us (numbers of dynamics3d.md, E7)."""
+    # Cage and ball have twice the mass each, which makes that mass of the pair, and trade their speeds.
     twice = 2 * 5.496616e-3
     free = BallTraction(mass=twice, slope=1e-9, speed=math.inf)
     cage = one_ball(traction=free, mass=twice, hertz_coefficient=5e8)
@@ -209,14 +205,12 @@ def whirl(found, late):
 
 @pytest.mark.parametrize(("friction", "frequency"), [(0.0, 22.28925), (0.8, 15.76088)])
 def test_a_cage_hangs_on_its_land_as_a_pendulum(friction, frequency):
-    """Sliding sqrt(g/c)/2 pi, rolling with a thin ring's inertia 1/sqrt 2 of it (dynamics3d E5).
-
-    It falls on its land first. A swing of 12 mrad lengthens the period by 1e-5 of it; a rolling one creeps.
-    """
+    """Sliding sqrt(g/c)/2 pi, rolling with a thin ring's inertia 1/sqrt 2 of it (dynamics3d E5)."""
     cage = on_a_land(gravity=G, land_friction=friction)
     found = followed(cage, 0.4, kick=5e-3, direction=0.0121, samples=8001)
     late = found.time > 0.2
     period = crossings(found.time[late], found.position[late, 1])
+    # It falls on its land first. A swing of 12 mrad lengthens the period by 1e-5 of it; a rolling one creeps.
     assert period == pytest.approx(1.0 / frequency, rel=2.5e-5)
 
 
@@ -235,11 +229,7 @@ def test_a_rolling_cage_swings_far_as_the_elliptic_pendulum_does():
 
 
 def test_a_dry_land_slows_down_a_whirl_against_it():
-    """Nu = nu_0/(1 + f nu_0 t), N = M c nu^2, and the spin takes M R c (nu_0 - nu)/J (dynamics3d E6).
-
-    From 500 rad/s at f .1: 333.3333 after 10 ms, 2.807674 rad/s, 3.125 N. From the centre a cage meets its
-    land head on; a ball deflects it before, and lets it whirl against the ring.
-    """
+    """Nu = nu_0/(1 + f nu_0 t), N = M c nu^2, and the spin takes M R c (nu_0 - nu)/J (dynamics3d E6)."""
     J, f = 2.671250e-5, 0.1
     cage = on_a_land(
         moment_of_inertia=J, guidance=Guidance.OUTER, outer_speed=1e5, land_friction=f,
@@ -250,6 +240,8 @@ def test_a_dry_land_slows_down_a_whirl_against_it():
     late = found.time > 0.01
     nu = -whirl(found, late)
     gained = found.rotation_rate[late][-1] - found.rotation_rate[late][0]
+    # From 500 rad/s at f .1: 333.3333 after 10 ms, 2.807674 rad/s, 3.125 N. From the centre a cage meets its
+    # land head on; a ball deflects it before, and lets it whirl against the ring.
     assert nu[0] > nu[-1] > 30.0
     assert np.polyfit(found.time[late], 1.0 / nu, 1)[0] == pytest.approx(f, rel=1e-4)
     assert found.land_force[late] == pytest.approx(M_L * C_G * nu**2, rel=3e-5)  # it gives way by 1e-5
@@ -261,15 +253,13 @@ def test_a_dry_land_slows_down_a_whirl_against_it():
 
 @pytest.mark.parametrize("sense", [1.0, -1.0])
 def test_a_dry_land_speeds_up_a_whirl(sense):
-    """Nu = nu_0/(1 - f nu_0 t): 1/nu falls by f each second (dynamics3d E6), with the spin held.
-
-    The ring drags it along; 2e-5 measured: the land gives way by 1e-5 of the clearance.
-    """
+    """Nu = nu_0/(1 - f nu_0 t): 1/nu falls by f each second (dynamics3d E6), with the spin held."""
     f = 0.1
     held = {"moment_of_inertia": 1e3, "guidance": Guidance.OUTER, "outer_speed": 1e4 * sense}
     found = followed(on_a_land(**held, land_friction=f), 0.04, kick=0.3, direction=0.0, samples=4001)
     late = found.time > 0.02
     nu = whirl(found, late)
+    # The ring drags it along; 2e-5 measured: the land gives way by 1e-5 of the clearance.
     assert np.all(nu * sense > 0.0)
     assert np.polyfit(found.time[late], 1.0 / np.abs(nu), 1)[0] == pytest.approx(-f, rel=5e-5)
 
@@ -278,10 +268,7 @@ def test_a_dry_land_speeds_up_a_whirl(sense):
     ("friction", "offset", "angle"), [(0.0, 1.586139e-7, 85.4536), (0.1, 1.578267e-7, 91.1642)]
 )
 def test_gripped_pockets_hold_a_cage_against_gravity(friction, offset, angle):
-    """Sag and its angle from gravity where the pockets of a turning ball set grip (dynamics3d E8).
-
-    To the digits printed there: 7 of the sag, 4 decimals of the angle.
-    """
+    """Sag and its angle from gravity where the pockets of a turning ball set grip (dynamics3d E8)."""
     cage = on_a_land(
         guidance=Guidance.BALL, land_clearance=None, pocket_clearance=0.0, pitch_radius=0.0325,
         moment_of_inertia=M_L * 0.0325**2, cage_speed=668.9886, inner_speed=1570.8, race_damping=356.5792,
@@ -293,6 +280,7 @@ def test_gripped_pockets_hold_a_cage_against_gravity(friction, offset, angle):
     t, drift = found.time[late], linear_roots(cage)[0]
     columns = np.stack([np.exp(-1j * cage.cage_speed * t), np.exp(drift * t)], axis=1)
     sag = np.linalg.lstsq(columns, found.position[late] @ np.array([1.0, 1j]), rcond=None)[0][0]
+    # To the digits printed there: 7 of the sag, 4 decimals of the angle.
     assert np.abs(sag) == pytest.approx(offset, rel=5e-7)
     assert math.degrees(abs(np.angle(sag))) == pytest.approx(angle, abs=1e-4)
 
@@ -326,12 +314,10 @@ def growth(balls: int, friction: float) -> float:
 
 @pytest.mark.parametrize(("balls", "corners", "critical"), [(11, 22, 0.1438), (12, 12, 0.2679)])
 def test_a_cage_whirls_in_the_polygon_of_its_pockets_above_a_tangent(balls, corners, critical):
-    """A corner turns it by 2 pi/n and leaves cos + f sin of its speed: it grows above tan(pi/n).
-
-    2 % below and above. 1e-5 of what the corners take without friction is measured: impacts last a part of
-    the way to the next corner.
-    """
+    """A corner turns it by 2 pi/n and leaves cos + f sin of its speed: it grows above tan(pi/n)."""
     angle = 2.0 * math.pi / corners
+    # 2 % below and above. 1e-5 of what the corners take without friction is measured: impacts last a part of
+    # the way to the next corner.
     assert critical == pytest.approx(math.tan(math.pi / corners), abs=5e-5)  # the digits given
     whole = -corners * math.log(math.cos(angle))
     for friction in (0.98 * critical, 1.02 * critical):

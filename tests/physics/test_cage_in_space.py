@@ -13,15 +13,13 @@ import numpy as np
 import pytest
 from cages import AT_REST, TURNING, damping_of, follow
 
+from separatrix import BallTraction, Guidance, MotionModel, PocketShape, StabilitySettings
 from separatrix.cage import MovingCage, outcome, rows
 from separatrix.cage.disturbance import Starts, ball_places, random_starts, start_states
 from separatrix.cage.ensemble import Stop, run_rows
 from separatrix.cage.numbers import look_time, numbers_of
 from separatrix.cage.rows import of
-from separatrix.chain.ball_traction import BallTraction
 from separatrix.ground.units import Array
-from separatrix.study.pocket_shape import PocketShape
-from separatrix.study.study import Guidance, MotionModel, StabilitySettings
 
 R, Z, OMEGA = 32.5e-3, 13, 668.9886
 SPACE = {
@@ -91,23 +89,18 @@ def test_two_wide_lands_hold_a_tilted_cage():
 
 
 def test_a_land_is_met_where_a_tilted_cage_leans():
-    """P3: at 6 mm, offset (.3, .1) mm, tilt (8, 3) mrad: 322.17 um at 9.376 deg.
-
-    0.05 um and 0.09 deg (0.5 um) measured; R tilt^2/2 is 1.3 um.
-    """
+    """P3: at 6 mm, offset (.3, .1) mm, tilt (8, 3) mrad: 322.17 um at 9.376 deg."""
     one = replace(LANDS, land_width=0.0, land_clearance=0.64e-3)  # the lower one is not met
     tilted = {rows.X: 0.3e-3, rows.Y: 0.1e-3, rows.TX: 8e-3, rows.TY: 3e-3}
     force = moment_at(one, tilted, {}).force(one)[:2]
     away = np.linalg.norm(force) / one.land_stiffness + 0.32e-3
+    # 0.05 um and 0.09 deg (0.5 um) measured; R tilt^2/2 is 1.3 um.
     assert away == pytest.approx(0.5e-3 - 177.8263833e-6, abs=1.2e-7)
     assert math.degrees(math.atan2(-force[1], -force[0])) == pytest.approx(9.3763, abs=0.2)
 
 
 def test_an_impact_in_space_keeps_momentum_along_the_orbit_and_about_the_axis():
-    """Of a cage and a ball that the races let go, in a bore that leans; friction without a lever.
-
-    Friction has a lever of 1e-9 m where no diameter is given, 0.3e-9/R of the pushed ball's momentum: 9e-9.
-    """
+    """Of a cage and a ball that the races let go, in a bore that leans; friction without a lever."""
     m, law = 6.567e-3, BallTraction(mass=6.567e-3, slope=1e-9, speed=math.inf)
     cage = replace(
         ROUND, cage_speed=0.0, ball_count=1, traction=law, pocket_axial_offset=1e-4, ball_diameter=0.0,
@@ -116,6 +109,7 @@ def test_an_impact_in_space_keeps_momentum_along_the_orbit_and_about_the_axis():
     start = {"kick": 0.5, "direction": 1.2, "duration": 1.5e-3, "until": 1.5e-3}
     found = follow(cage, ball_lead=np.zeros(1), **start)
     pushed = m * found.ball_speed[:, 0]
+    # Friction has a lever of 1e-9 m where no diameter is given, 0.3e-9/R of the pushed ball's momentum: 9e-9.
     assert pushed[-1] > 1e-3
     assert np.abs(found.axial_speed).max() > 0.01
     linear = cage.mass * found.velocity[:, 1] + pushed
@@ -142,28 +136,24 @@ def growing(friction: float, **change: object) -> float:
 
 @pytest.mark.parametrize(("held", "friction"), [(False, 0.062), (True, 0.119)])
 def test_a_cage_in_round_bores_that_may_tilt_whirls_at_half_the_friction(held, friction):
-    """E10: half of the runs grow at .062, with tilt held at .119, by another program's 48 runs: 10 %.
-
-    .0640 and .1236 measured with 96 runs, each to 2 % by their number; with 48 to 3 %.
-    """
+    """E10: half of the runs grow at .062, with tilt held at .119, by another program's 48 runs: 10 %."""
     frictions = friction * np.linspace(0.85, 1.2, 5)
     shares = [growing(f, is_tilt_held=held) for f in frictions]
     slope, offset = np.polyfit(frictions, shares, 1)
+    # .0640 and .1236 measured with 96 runs, each to 2 % by their number; with 48 to 3 %.
     assert (0.5 - offset) / slope == pytest.approx(friction, rel=0.10)
 
 
 def test_a_free_cage_wobbles():
-    """E4: J_p w / J_t, 206.6285 Hz in space, is 100.1557 Hz in the turning frame.
-
-    To half of the last digit and, as much again, what moments of seven digits leave open; to the closed form
-    by the step's error, of 0.01 rad over five turns.
-    """
+    """E4: J_p w / J_t, 206.6285 Hz in space, is 100.1557 Hz in the turning frame."""
     ring = {"moment_of_inertia": 2.671250e-5, "transverse_inertia": 1.376458e-5, "tilt_kick": 1.0}
     cage = replace(ROUND, **ring, pocket_clearance=0.2, dynamic_unbalance=0.0)
     free = follow(cage, kick=0.1, direction=0.0, ball_lead=np.zeros(Z), duration=0.05, until=0.05)
     in_space = free.lean_rate + OMEGA * np.stack([-free.lean[:, 1], free.lean[:, 0]], axis=1)
     angle = np.unwrap(np.arctan2(in_space[:, 1], in_space[:, 0]))
     turning = (angle[-1] - angle[0]) / (free.time[-1] - free.time[0]) / (2.0 * math.pi)
+    # To half of the last digit and, as much again, what moments of seven digits leave open; to the closed
+    # form by the step's error, of 0.01 rad over five turns.
     assert turning == pytest.approx(100.1557, abs=1e-4)
     wobble = cage.moment_of_inertia / cage.transverse * OMEGA / (2.0 * math.pi)
     assert turning + OMEGA / (2.0 * math.pi) == pytest.approx(wobble, rel=3e-10)  # 1e-10 measured

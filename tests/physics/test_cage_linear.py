@@ -7,13 +7,8 @@ import numpy as np
 import pytest
 from cages import AT_REST, TURNING, followed, gripped, linear_roots
 
-from separatrix.cage import (
-    MovingCage,
-    linear_critical_friction,
-    linear_whirl_frequency,
-    numbers,
-    run_ensemble,
-)
+from separatrix import MovingCage, linear_critical_friction, linear_whirl_frequency, run_ensemble
+from separatrix.cage import numbers
 from separatrix.cage.closed_forms import drift_rate_law, whirl_rate
 from separatrix.chain.ball_traction import BallTraction
 from separatrix.study.study import MotionModel, StabilitySettings
@@ -36,10 +31,7 @@ def test_critical_friction_of_the_linear_limit(damping, friction):
 @pytest.mark.parametrize("speed", [0.0, 669.0, 3000.0])
 @pytest.mark.parametrize("law", [None, LAW], ids=["damper", "one state"])
 def test_small_motions_are_the_exponentials_of_the_roots(law, speed):
-    """All three or four of them, from the disturbance on: 2e-4 of the motion at half the usual step.
-
-    8e-5 is measured, and 1/16 of it at half of that.
-    """
+    """All three or four of them, from the disturbance on: 2e-4 of the motion at half the usual step."""
     grip = {"cage_speed": speed, "pocket_clearance": 0.0, "race_damping": 900.0, "ball_cage_friction": 0.1}
     cage = replace(TURNING, **grip, traction=law)
     found = followed(cage, 2e-3, direction=0.3, refine=2)
@@ -49,6 +41,7 @@ def test_small_motions_are_the_exponentials_of_the_roots(law, speed):
     begun = np.array([0.0, 1.0, -2j * turn, (-2j * turn) ** 2 + turn**2 - (1 - 0.1j)])[: len(roots)] * v / w0
     share = np.linalg.solve(np.vander(roots / w0, increasing=True).T, begun)
     exact = np.exp(np.outer(found.time, roots)) @ share
+    # 8e-5 is measured, and 1/16 of it at half of that.
     np.testing.assert_allclose(found.position @ [1, 1j], exact, rtol=0, atol=2e-4 * np.abs(exact).max())
 
 
@@ -74,12 +67,10 @@ def test_whirl_is_forward_for_inner_rotation_and_backward_for_outer(changes):
 
 @pytest.mark.parametrize("clearance", [0.0, 6e-4])
 def test_a_landless_cage_drifts_at_the_rate_of_the_law(clearance):
-    """2 M Omega^2/(Z C_mu), the slow root, whose next order is 7e-4: twice that, and single precision.
-
-    With clearance 2e-3 measured, for the pockets are left and met again: 2.5 times that.
-    """
+    """2 M Omega^2/(Z C_mu), the slow root, whose next order is 7e-4: twice that, and single precision."""
     cage = gripped(500.0, 0.05, cage_speed=700.0, pocket_clearance=clearance)
     slow = min(linear_roots(replace(cage, ball_cage_friction=0.0)), key=abs)
+    # With clearance 2e-3 measured, for the pockets are left and met again: 2.5 times that.
     assert slow.real == pytest.approx(drift_rate_law(cage), rel=1.5e-3)
     found = run_ensemble(cage, StabilitySettings(kicks=(0.5,), runs=4, duration=0.4))
     assert found.drift_rate == pytest.approx(drift_rate_law(cage), rel=5e-3 if clearance else 2e-3)
@@ -124,10 +115,7 @@ def test_walls_along_the_axis_raise_the_threshold_in_space():
 
 @pytest.mark.usefixtures("no_walls_along_the_axis")
 def test_in_space_a_whirl_tilts_as_the_linear_law_says():
-    """E9: 2891.193 Hz, and a forced tilt of .039251 of the offset, R^2 M/J_t times the axial friction.
-
-    3e-4 and 2e-5 measured: the sliding of the cage itself, and the step.
-    """
+    """E9: 2891.193 Hz, and a forced tilt of .039251 of the offset, R^2 M/J_t times the axial friction."""
     there = followed(ring(4000.0, CRITICAL), 0.1, samples=20_001, kick=0.05)
     late = there.time > 0.05
     time, w = there.time[late], 2.0 * math.pi * 2891.193
@@ -137,5 +125,6 @@ def test_in_space_a_whirl_tilts_as_the_linear_law_says():
     )
     turns = np.unwrap(np.angle(there.velocity[late] @ [1.0, 1j])) / (2.0 * math.pi)
     found = R * np.abs(tilt[2:]).max() / np.abs(offset[2:]).max()
+    # 3e-4 and 2e-5 measured: the sliding of the cage itself, and the step.
     assert found == pytest.approx(TILT, rel=1e-3)
     assert abs(np.polyfit(time, turns, 1)[0]) == pytest.approx(2891.193, rel=5e-5)

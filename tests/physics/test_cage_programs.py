@@ -12,9 +12,7 @@ import pytest
 from cages import EVERYTHING, ON_A_LAND, TURNING, follow
 from plane_program import Course, integrate
 
-from separatrix.cage import History, MovingCage
-from separatrix.chain.ball_traction import BallTraction
-from separatrix.study.study import Guidance, PocketShape
+from separatrix import BallTraction, Guidance, History, MovingCage, PocketShape
 
 LAW = BallTraction(mass=6.567e-3, slope=188.0, speed=0.39)
 BODY = {

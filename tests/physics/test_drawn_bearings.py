@@ -9,14 +9,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.special import ndtr
 
-from separatrix.cage import RunOutcome, moving_cage, run_ensemble
+from separatrix import InputError, RunOutcome, Verdict, judge, moving_cage, read_study, run_ensemble, solve
 from separatrix.cage.disturbance import settings_for
-from separatrix.chain.solution import solve
 from separatrix.friction.friction_fit import TestedFriction
-from separatrix.ground.errors import InputError
 from separatrix.study.candidates import environment_of
 from separatrix.study.distribution import normal, samples, uniform
-from separatrix.study.reading import read_study
 from separatrix.study.study import Candidate, Friction, RankingQuestion
 from separatrix.verdict.draws import (
     Case,
@@ -26,7 +23,6 @@ from separatrix.verdict.draws import (
     sobol_points,
     uncertain_inputs,
 )
-from separatrix.verdict.judgement import Verdict, judge
 from separatrix.verdict.long_jobs import Runner
 from separatrix.verdict.ranking import rank
 
@@ -133,7 +129,6 @@ def test_rank_shows_both_verdicts_only_where_inputs_are_uncertain():
 
 # Quasi-random draws: what holds whatever the study, the number of samples and the seed.
 
-
 BASE = read_study("cryogenic-turbopump")
 LAWS = {
     "film.thickness": normal(mean=5e-7, standard_deviation=1e-7),
@@ -157,12 +152,10 @@ def test_fewer_samples_are_the_first_of_more(few, more, seed, dimensions):
 @FEW
 @given(st.integers(0, 10), st.integers(0, 2**62))
 def test_every_dimension_is_stratified_inside_the_cube(power, seed):
-    """A power of two of points has exactly one in each of as many equal cells, along every axis.
-
-    Each is in the middle of its cell of 2**-30, so none is 0 or 1, where a quantile has its end.
-    """
+    """A power of two of points has exactly one in each of as many equal cells, along every axis."""
     points = sobol_points(2**power, 5, seed)
     cells = np.sort(np.floor(points * 2**power).astype(int), axis=0)
+    # Each is in the middle of its cell of 2**-30, so none is 0 or 1, where a quantile has its end.
     assert (cells == np.arange(2**power)[:, None]).all()
     assert (np.mod(points * 2.0**31, 2.0) == 1.0).all()
     assert 0.0 < points.min() <= points.max() < 1.0
@@ -230,7 +223,8 @@ def of_friction(**known):
 
 
 def test_a_friction_whose_scatter_reaches_zero_is_log_normal():
-    """No draw of a friction is negative, and the mean stays the measured one."""
+    """No draw of a friction is negative, the mean stays the measured one; 0 without scatter is certain."""
+    assert uncertain_inputs(of_friction(mean=0.0)) == ()
     draws = sample(of_friction(mean=0.05, standard_deviation=0.02), 1024)
     assert draws.inputs[0].distribution.kind == "log-normal"
     assert draws.values.min() > 0.0
@@ -267,8 +261,3 @@ def test_what_cannot_be_drawn_is_refused(draw, words):
     """Too few, too many, or nothing uncertain; a zero that scatters; a friction known to ten powers of e."""
     with pytest.raises(InputError, match=words):
         draw()
-
-
-def test_a_friction_of_zero_without_scatter_is_certain():
-    """It is no input."""
-    assert uncertain_inputs(of_friction(mean=0.0)) == ()

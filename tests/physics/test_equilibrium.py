@@ -1,7 +1,7 @@
 """Equilibrium against cases computed twice independently, exact identities, balances, and its friction."""
 
-import dataclasses
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,22 +11,16 @@ from mobile_balls import RPM, study_of
 from scipy.optimize import root
 from scipy.special import ellipe
 
+from separatrix import BallBearing, ConvergenceError, InputError, KinematicModel, Operation, Race, read_study
 from separatrix.chain.equilibrium import Equilibrium, contact, equilibrium
 from separatrix.chain.grooved_ball import contact_actions, problem, touch
 from separatrix.chain.hertz import contact_ellipse, contact_modulus, race_curvatures
 from separatrix.chain.slip_friction import NODES, chebyshev_nodes, friction_resultants
-from separatrix.ground.errors import ConvergenceError, InputError
 from separatrix.ground.units import Array
-from separatrix.study.reading import read_study
-from separatrix.study.study import BallBearing, KinematicModel, Operation, Race
 
-OUTER, INNER, FREE = (
-    KinematicModel.OUTER_RACE_CONTROL,
-    KinematicModel.INNER_RACE_CONTROL,
-    KinematicModel.FREE,
-)
+FREE = KinematicModel.FREE
+OUTER, INNER = KinematicModel.OUTER_RACE_CONTROL, KinematicModel.INNER_RACE_CONTROL
 BALANCED = 2e-6  # the ring stops at 1e-6 of its load, the balls far below
-
 
 LE7 = read_study("le7").bearing
 """A turbopump's bearing."""
@@ -44,12 +38,10 @@ COMBINED = Operation(inner_speed=50_000 * RPM, axial_load=2670.0, radial_load=80
     ],
 )
 def test_218_bearing(model, angles, loads, ratio) -> None:
-    """The three kinematic models at 22 250 N and 10 000 rpm, friction 0.15; digits as given.
-
-    The gyroscopic moment opens the angles: with the wrong sign the inner one would fall to 44.9 deg.
-    """
+    """The three kinematic models at 22 250 N and 10 000 rpm, friction 0.15; digits as given."""
     result = equilibrium(BEARING_218, SPINNING, model, 0.15)
     digit = 0.01 if model is FREE else 0.001
+    # The gyroscopic moment opens the angles: with the wrong sign the inner one would fall to 44.9 deg.
     assert math.degrees(result.contact_angle_inner[0]) == pytest.approx(angles[0], abs=digit)
     assert math.degrees(result.contact_angle_outer[0]) == pytest.approx(angles[1], abs=digit)
     if loads:
@@ -164,7 +156,7 @@ def test_ring_carries_its_loads(model: KinematicModel) -> None:
 def test_held_tilt_returns_its_moment() -> None:
     """Rings held at the tilt that a moment makes need that moment."""
     free = equilibrium(LE7, COMBINED, OUTER, 0.1)
-    held = dataclasses.replace(COMBINED, moment=None, tilt=free.tilt)
+    held = replace(COMBINED, moment=None, tilt=free.tilt)
     result = equilibrium(LE7, held, OUTER, 0.1)
     assert result.load_inner == pytest.approx(free.load_inner, rel=1e-6)
     assert result.moment == pytest.approx(1.0, rel=1e-5)
@@ -177,12 +169,12 @@ def test_rings_are_held_parallel_unless_a_moment_frees_them() -> None:
     assert held.is_tilt_held
     assert held.tilt == held.cross_tilt == 0.0
     assert abs(held.moment) > 1.0
-    free = equilibrium(LE7, dataclasses.replace(loaded, moment=0.0), OUTER, 0.1)
+    free = equilibrium(LE7, replace(loaded, moment=0.0), OUTER, 0.1)
     assert not free.is_tilt_held
     assert abs(free.tilt) > 1e-4
     assert free.moment == 0.0
     assert free.most_loaded == 0  # of azimuth 0, where the radial load points
-    parallel = equilibrium(LE7, dataclasses.replace(loaded, tilt=0.0), OUTER, 0.1)
+    parallel = equilibrium(LE7, replace(loaded, tilt=0.0), OUTER, 0.1)
     assert np.array_equal(parallel.load_inner, held.load_inner)
 
 
@@ -240,7 +232,7 @@ def test_second_road_by_a_general_solver() -> None:
 
 def test_balls_that_leave_the_inner_race_rest_on_the_outer() -> None:
     """Radial load with play at speed: unloaded balls press outward with their centrifugal force alone."""
-    bearing = dataclasses.replace(BEARING_218, contact_angle=math.radians(8.0))
+    bearing = replace(BEARING_218, contact_angle=math.radians(8.0))
     operation = Operation(inner_speed=6000 * RPM, axial_load=0.0, radial_load=5000.0)
     for model in (OUTER, INNER, FREE):
         result = equilibrium(bearing, operation, model, 0.1)
@@ -402,64 +394,49 @@ def test_much_friction_spins_least_at_the_better_held_race():
 
 # What the equilibrium refuses, and what it says when it cannot balance.
 
-
-STEEL = dataclasses.replace(STEEL_218, elastic_modulus=206e9)
-BEARING = dataclasses.replace(TURBOPUMP, outer_conformity=0.52, ball_material=STEEL, ring_material=STEEL)
+STEEL = replace(STEEL_218, elastic_modulus=206e9)
+BEARING = replace(TURBOPUMP, outer_conformity=0.52, ball_material=STEEL, ring_material=STEEL)
 OPERATION = Operation(inner_speed=1500.0, axial_load=3000.0)
 
 
-@pytest.mark.parametrize("friction", [0.0, -0.1, math.nan, math.inf])
-def test_free_kinematics_need_friction(friction: float) -> None:
-    """Without friction nothing turns a ball: refused with the cure."""
-    with pytest.raises(InputError, match=r"must be > 0 without race control.*use race control"):
-        equilibrium(BEARING, OPERATION, KinematicModel.FREE, friction)
+TIGHT = {"inner_conformity": 0.508, "outer_conformity": 0.567, "contact_angle": math.radians(45.0)}
+LIGHT = replace(BEARING, ball_material=replace(STEEL, density=None))
+REFUSED = [
+    *((BEARING, OPERATION, FREE, friction, "must be > 0 without race control.*use race control")
+      for friction in (0.0, -0.1, math.nan, math.inf)),
+    (LIGHT, OPERATION, OUTER, 0.1, r"ball_material needs a density \[kg/m3\]"),
+    # a grain of axial load at 4e6 DN and a tight inner groove: the ball climbs its groove to the edge
+    *((replace(BEARING, **TIGHT), Operation(inner_speed=6000.0, axial_load=100.0), model, 0.1,
+       "out of their grooves: a contact angle .*raise the axial load") for model in KinematicModel),
+    # grooves that hug the balls make long ellipses: over 90 deg from the bottom there is no groove
+    (replace(BEARING, inner_conformity=0.5005, outer_conformity=0.5005),
+     Operation(inner_speed=10.0, axial_load=1e5), FREE, 0.1, "press balls over the edges of their grooves"),
+]  # fmt: skip
 
 
-def test_a_turning_ball_needs_a_density() -> None:
-    """Centrifugal force is asked for, so mass is."""
-    light = dataclasses.replace(STEEL, density=None)
-    bearing = dataclasses.replace(BEARING, ball_material=light)
-    with pytest.raises(InputError, match=r"ball_material needs a density \[kg/m3\]"):
-        equilibrium(bearing, OPERATION, KinematicModel.OUTER_RACE_CONTROL, 0.1)
+@pytest.mark.parametrize(("bearing", "operation", "model", "friction", "words"), REFUSED)
+def test_what_has_no_equilibrium_is_refused_with_the_cure(bearing, operation, model, friction, words) -> None:
+    """Nothing that turns a ball, no mass of one that turns, balls beside or over the edges of grooves."""
+    with pytest.raises(InputError, match=words):
+        equilibrium(bearing, operation, model, friction)
     still = Operation(inner_speed=0.0, axial_load=3000.0)
-    assert equilibrium(bearing, still, KinematicModel.OUTER_RACE_CONTROL, 0.1).load_inner[0] > 0.0
-
-
-@pytest.mark.parametrize("model", list(KinematicModel))
-def test_balls_beside_their_grooves_are_refused(model: KinematicModel) -> None:
-    """A grain of axial load at 4e6 DN and a tight inner groove: the ball climbs its groove to the edge."""
-    tight = {"inner_conformity": 0.508, "outer_conformity": 0.567, "contact_angle": math.radians(45.0)}
-    bearing, operation = (
-        dataclasses.replace(BEARING, **tight),
-        Operation(inner_speed=6000.0, axial_load=100.0),
-    )
-    with pytest.raises(InputError, match=r"out of their grooves: a contact angle .*raise the axial load"):
-        equilibrium(bearing, operation, model, 0.1)
-
-
-def test_a_contact_wider_than_its_groove_is_refused() -> None:
-    """Grooves that hug the balls make long ellipses: over 90 deg from the bottom there is no groove."""
-    hugging = dataclasses.replace(BEARING, inner_conformity=0.5005, outer_conformity=0.5005)
-    with pytest.raises(InputError, match="press balls over the edges of their grooves"):
-        equilibrium(hugging, Operation(inner_speed=10.0, axial_load=1e5), KinematicModel.FREE, 0.1)
+    assert equilibrium(LIGHT, still, OUTER, 0.1).load_inner[0] > 0.0
 
 
 def test_balls_that_touch_nothing_have_nominal_angles() -> None:
-    """A ball on the far side of a radial load does not touch the missing upper half of the inner groove.
-
-    The groove was a full circle: such a ball reported an inner angle of 180 deg.
-    """
+    """A ball on the far side of a radial load does not touch the missing upper half of the inner groove."""
     sizes = {"ball_diameter": 1.0906e-3, "pitch_diameter": 61.72e-3, "ball_count": 160}
     grooves = {"contact_angle": math.radians(79.0), "inner_conformity": 0.6, "outer_conformity": 0.51}
-    bearing = dataclasses.replace(BEARING, **sizes, **grooves)
+    bearing = replace(BEARING, **sizes, **grooves)
     operation = Operation(inner_speed=0.0, outer_speed=10472.0, axial_load=0.0, radial_load=500.0)
-    result = equilibrium(bearing, operation, KinematicModel.OUTER_RACE_CONTROL, 2.0)
+    result = equilibrium(bearing, operation, OUTER, 2.0)
+    # The groove was a full circle: such a ball reported an inner angle of 180 deg.
     assert not result.inner_contact.all()
     assert result.outer_contact.all()
     assert abs(result.contact_angle_inner).max() < 0.5 * math.pi
 
 
-@pytest.mark.parametrize("model", [KinematicModel.FREE, KinematicModel.INNER_RACE_CONTROL])
+@pytest.mark.parametrize("model", [FREE, INNER])
 def test_a_load_that_cannot_be_carried_is_one_sentence(model: KinematicModel) -> None:
     """A ring that weighs next to nothing and may tilt: said in one line, with a cure and how far it came."""
     afloat = Operation(inner_speed=1500.0, axial_load=1e-6, radial_load=5e-6, moment=0.0)
@@ -472,6 +449,6 @@ def test_a_load_that_cannot_be_carried_is_one_sentence(model: KinematicModel) ->
 def test_a_load_of_a_micronewton_is_carried(radial: float) -> None:
     """The normal loads and the friction carry it; none drowns in the tolerance of a larger load."""
     operation = Operation(inner_speed=1500.0, axial_load=1e-6, radial_load=radial)
-    result = equilibrium(BEARING, operation, KinematicModel.OUTER_RACE_CONTROL, 0.1)
+    result = equilibrium(BEARING, operation, OUTER, 0.1)
     carried = float((result.load_inner * np.sin(result.contact_angle_inner)).sum())
     assert carried == pytest.approx(1e-6, rel=1e-3)  # what `LEAST` accepts

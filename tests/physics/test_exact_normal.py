@@ -8,6 +8,7 @@ from exact_cases import MU, body, kalker
 from scipy.integrate import dblquad
 from scipy.optimize import brentq
 
+from separatrix import ContactProblem, FrictionLaw, InputError, gap_contact, rolling_contact, solid
 from separatrix.chain.exact.grid import elliptic_grid, elliptic_pressure, row_ends
 from separatrix.chain.exact.influence import (
     UNCOUPLED,
@@ -17,13 +18,9 @@ from separatrix.chain.exact.influence import (
     half_space_flexibility,
     influence,
     pair_images,
-    solid,
 )
 from separatrix.chain.exact.pressure import press, pressed_box, pressed_contact
-from separatrix.chain.exact.rolling import ContactProblem, gap_contact, rolling_contact
-from separatrix.chain.exact.slip import FrictionLaw
 from separatrix.chain.hertz import contact_ellipse, ellipse_of_curvatures
-from separatrix.ground.errors import InputError
 
 SOFT = body(0.3, (0.01, 0.46, 0.1))
 PLAIN = ((0, 1.0),)
@@ -57,10 +54,7 @@ def test_limits_of_wavenumber():
 
 
 def test_a_film_in_series_holds_to_half_a_percent_but_not_a_stiff_one():
-    """c_rr of the race and of the bare ball against half-planes plus kh/G, up to kh = 0.03: docs' claims.
-
-    Dense MoS2 (136 GPa) stiffens the race against stretching: 1.2 % at kh = 0.03.
-    """
+    """c_rr of the race and of the bare ball against half-planes plus kh/G, up to kh = 0.03: docs' claims."""
     kh, steel = np.array([0.003, 0.01, 0.03]), solid(205e9, 0.285)
     bare = half_space_flexibility(steel)[0]
 
@@ -69,6 +63,7 @@ def test_a_film_in_series_holds_to_half_a_percent_but_not_a_stiff_one():
         coated = body(0.285, (film.shear_modulus, poisson, 1e-6), G=steel.shear_modulus)
         return (2.0 * bare + kh / film.shear_modulus) / (flexibility(coated, kh / 1e-6)[0] + bare) - 1.0
 
+    # Dense MoS2 (136 GPa) stiffens the race against stretching: 1.2 % at kh = 0.03.
     for modulus in (0.5e9, 1.5e9, 4e9, 20e9):
         assert np.abs(gap(modulus, 0.38)).max() < 5e-3  # the claim itself
     assert gap(136e9, 0.3)[-1] == pytest.approx(0.0116, abs=5e-4)  # measured
@@ -130,10 +125,7 @@ def test_cut_cells_keep_area_and_load(b, columns, rows):
 
 @pytest.mark.parametrize("columns", [14, 20, 28, 40])
 def test_ends_of_a_solved_pressure(columns):
-    """Bare bodies, b/a = 0.13: ends of the rows of Hertz's ellipse to 0.1 of a cell, wherever they cut it.
-
-    The last pressures themselves, extrapolated, miss it by up to 0.4.
-    """
+    """Bare bodies, b/a = 0.13: ends of the rows of Hertz's ellipse to 0.1 of a cell, wherever they cut it."""
     bare = body(0.3, G=80e9)
     hertz = contact_ellipse(300.0, 400.0, 16.0, 80e9 / 0.7)
     b, a = hertz.semi_minor, hertz.semi_major
@@ -141,6 +133,7 @@ def test_ends_of_a_solved_pressure(columns):
     long = np.abs(y) < 0.8 * a
     half = b * np.sqrt(1.0 - (y[long] / a) ** 2)[:, None]
     ends = row_ends(x, pressing.pressure)[long]
+    # The last pressures themselves, extrapolated, miss it by up to 0.4.
     assert ends == pytest.approx(half * [-1.0, 1.0], abs=0.1 * (x[1] - x[0]))
 
 
@@ -218,24 +211,19 @@ def fredholm(coated, load, points=64):
 
 @pytest.mark.parametrize(("ratio", "h"), COATED)
 def test_coated_sphere(ratio, h):
-    """Rigid sphere: radius, approach and pressure at the centre as by the method that has no grid.
-
-    0.03 % in approach and pressure: extrapolated, the worst of the 14 cases is off by 0.009 %, the coarser
-    grid alone by 0.05 % or more. The radius is that of the pressed area, of which half a cell is 2 %.
-    """
+    """Rigid sphere: radius, approach and pressure at the centre as by the method that has no grid."""
     coated, load, top = coated_sphere(ratio, h)
     a, d, p0 = fredholm(coated, load)
     found = spheres_on_two_grids(ratio, h, a)
     approach, centre, _ = (4.0 * found[1] - found[0]) / 3.0
+    # 0.03 % in approach and pressure: extrapolated, the worst of the 14 cases is off by 0.009 %, the coarser
+    # grid alone by 0.05 % or more. The radius is that of the pressed area, of which half a cell is 2 %.
     assert (approach, centre) == pytest.approx((d, p0 / top), rel=3e-4)
     assert found[1][2] == pytest.approx(a, rel=0.02)
 
 
 def test_a_gap_gives_the_contact_of_its_ellipse():
-    """The gap of an ellipse on 40 cells across it: forces and largest pressure as on the ellipse, to 1 %.
-
-    The share of the load on the cells at the outline is (2/40)^1.5 = 1 %.
-    """
+    """The gap of an ellipse on 40 cells across it: forces and largest pressure as on the ellipse, to 1 %."""
     hertz = ellipse_of_curvatures(1e-3, 1.0, 0.3, 1.0 / (1.0 - 0.25))  # E* of G = 1
     law = FrictionLaw(coefficient=MU)
     problem = ContactProblem(ellipse=hertz, bodies=(body(0.25), body(0.25)), friction=law)
@@ -247,6 +235,7 @@ def test_a_gap_gives_the_contact_of_its_ellipse():
     one, two = (
         [kalker(at, xi).force, kalker(at, 0.0, xi).lateral_force] for at in (made, rolling_contact(problem))
     )
+    # The share of the load on the cells at the outline is (2/40)^1.5 = 1 %.
     assert one == pytest.approx(two, rel=1e-2)
     assert made.problem.ellipse.max_pressure == pytest.approx(hertz.max_pressure, rel=1e-2)
     with pytest.raises(InputError, match="must reach beyond the contact on all sides"):

@@ -72,12 +72,10 @@ def cauchy_slope(coated, n=160):
 
 @pytest.mark.parametrize(("ratio", "nu", "expected"), PLANE)
 def test_plane_layer(ratio, nu, expected):
-    """Sticking tyred cylinder (Bentall & Johnson 1968, Nowell & Hills 1988), by the equation of its slope.
-
-    0.34 % at 40 columns, 0.05 % at 160: 0.5 % was asked. `expected` was computed before, with other
-    quadratures: its four decimals, of which the softest film's are short by one.
-    """
+    """Sticking tyred cylinder (Bentall & Johnson 1968, Nowell & Hills 1988), by the equation of its slope."""
     bare = math.pi / 2.0 / (1.0 - 0.285)
+    # 0.34 % at 40 columns, 0.05 % at 160: 0.5 % was asked. `expected` was computed before, with other
+    # quadratures: its four decimals, of which the softest film's are short by one.
     for h, value in zip((0.03, 0.1, 0.3, 1.0), expected, strict=True):
         coated = body(0.285, (ratio, nu, h))
         exact = cauchy_slope(coated) / bare
@@ -93,13 +91,11 @@ CUTS = (1.0, 0.875, 0.75, 0.625, 0.5, 0.375, 0.25, 0.125)
 
 @pytest.mark.parametrize("h", [0.001, 0.003, 0.007, 0.013])
 def test_films_thinner_than_a_cell(h):
-    """Soft film: sticking slope of 28 columns, mean over cuts, to 0.13/28 of that of 224 columns.
-
-    A contact of many rows has every cut. It is 0.10 at most; without the rules of the row ends 0.2 (the
-    thinnest film), with these rules up to a twentieth of a column 0.19 (the two thickest).
-    """
+    """Soft film: sticking slope of 28 columns, mean over cuts, to 0.13/28 of that of 224 columns."""
     bodies = body(0.285), body(0.285, (0.00215, 0.46, h))
     found, fine = (np.mean([strip_force(n, bodies, fraction=f) for f in CUTS]) for n in (28, 224))
+    # A contact of many rows has every cut. It is 0.10 at most; without the rules of the row ends 0.2 (the
+    # thinnest film), with these rules up to a twentieth of a column 0.19 (the two thickest).
     assert found == pytest.approx(fine, rel=0.13 / 28)
 
 

@@ -10,21 +10,11 @@ import numpy as np
 import pytest
 from exact_cases import MU, P0, body, contact
 
-from separatrix.chain.creep import Creep
+from separatrix import Body, Creep, FrictionLaw, Layer, contact_ellipse, ellipse_of_axes, solid, worn_band
 from separatrix.chain.exact.grid import elliptic_grid, elliptic_pressure
-from separatrix.chain.exact.influence import Body, Layer, solid
 from separatrix.chain.exact.pressure import film_strain, pressure_slip
-from separatrix.chain.exact.rolling import (
-    ContactProblem,
-    creep_of_force,
-    rigid_slip,
-    rolling_contact,
-    solve,
-)
-from separatrix.chain.exact.slip import FrictionLaw
+from separatrix.chain.exact.rolling import ContactProblem, creep_of_force, rigid_slip, rolling_contact, solve
 from separatrix.chain.exact.slope import traction_slope
-from separatrix.chain.film_compliance import worn_band
-from separatrix.chain.hertz import contact_ellipse, ellipse_of_axes
 from separatrix.ground.errors import ConvergenceError
 
 STEEL = solid(200e9, 0.285)
@@ -100,13 +90,11 @@ OWN_PRESSURE = [  # E [GPa], nu, thickness [um]; slopes on 128 columns and 160 r
 
 @pytest.mark.parametrize(("E", "nu", "thickness", "converged"), OWN_PRESSURE)
 def test_slopes_of_own_pressure(E, nu, thickness, converged):
-    """To 0.5 %, as asked, and to the error reported; under Hertz's pressure 3 um of 0.5 GPa have 6.25.
-
-    With the row ends by the root law alone, which a soft film does not follow, it is 5 % lower.
-    """
+    """To 0.5 %, as asked, and to the error reported; under Hertz's pressure 3 um of 0.5 GPa have 6.25."""
     film = Layer(thickness=thickness * 1e-6, solid=solid(E * 1e9, nu))
     asked = problem(OUTER[0], film=film, own_pressure=True)
     found = traction_slope(asked, OUTER[1])
+    # With the row ends by the root law alone, which a soft film does not follow, it is 5 % lower.
     assert abs(found.slope - converged) < min(found.slope_error, 5e-3 * converged)
     assert found.slope_error < 0.03 * found.slope
     assert found.solution.film_strain == film_strain(asked.bodies, found.solution.max_pressure)
@@ -163,10 +151,7 @@ def test_bounds():
 
 
 def test_slip_of_the_pressure_on_a_circle():
-    """Unlike half-spaces: u_r = -dc_rz p0 a^2/(3 r) [1 - (1 - r^2/a^2)^1.5] (Johnson 1985, 3.41b).
-
-    1 % of the largest: the periodic box and the linear interpolation.
-    """
+    """Unlike half-spaces: u_r = -dc_rz p0 a^2/(3 r) [1 - (1 - r^2/a^2)^1.5] (Johnson 1985, 3.41b)."""
     soft, hard = body(0.3, G=1.0), body(0.3, G=5.0)
     grid = elliptic_grid(semi_minor=1.0, semi_major=1.0, columns=24, rows=24)
     p = elliptic_pressure(grid, semi_minor=1.0, semi_major=1.0, max_pressure=1.0)
@@ -181,6 +166,7 @@ def test_slip_of_the_pressure_on_a_circle():
     moved = [(x + side * e) * u_over_r((x + side * e) ** 2 + y * y) for side in (1.0, -1.0)]
     W_x = -(moved[0] - moved[1]) / (2.0 * e)
     inside = np.hypot(x, y) < 0.9
+    # 1 % of the largest: the periodic box and the linear interpolation.
     assert found[0][inside] == pytest.approx(0.5 * W_x[inside], abs=0.01 * dc)
 
 

@@ -11,15 +11,13 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from separatrix import BallModel, read_study, solve
 from separatrix.cage import moving_cage, rows
 from separatrix.cage.ball import race_force, slip_field
 from separatrix.cage.motion import ball_rates
 from separatrix.cage.numbers import numbers_of
 from separatrix.cage.rows import LANES, RACE_ROWS
 from separatrix.chain.slip_friction import chebyshev_nodes, friction_resultants
-from separatrix.chain.solution import solve
-from separatrix.study.reading import read_study
-from separatrix.study.study import BallModel
 
 M, RADIUS, ORBIT, SPEED, Q, MU = 2.029805e-3, 3.969e-3, 19.25e-3, 50_000 * math.pi / 30.0, 600.0, 0.1
 V, J = SPEED * (ORBIT - RADIUS), 0.4 * M * RADIUS**2
@@ -33,10 +31,7 @@ def race(outward: float) -> np.ndarray:
 
 
 def test_a_ball_is_spun_up_by_the_driving_race():
-    """E1: u = (10/7)(mu Q/m) t up to V/2 at 7 m V/(20 mu Q); the other race rolls, and carries 3/7 mu Q.
-
-    From rest, which is V/2 below free rolling. The rolling race creeps by some 5e-6 of V.
-    """
+    """E1: u = (10/7)(mu Q/m) t up to V/2 at 7 m V/(20 mu Q); the other race rolls, and carries 3/7 mu Q."""
     inner, outer = race(-1.0), race(1.0)
 
     def forces(y):
@@ -51,6 +46,7 @@ def test_a_ball_is_spun_up_by_the_driving_race():
     start = np.array([-0.5 * V, 0.5 * V / RADIUS])
     how = {"method": "Radau", "rtol": 1e-9, "atol": (1e-6, 1e-4), "t_eval": times}
     speed, turn = solve_ivp(rates, (0.0, times[-1]), start, **how).y
+    # From rest, which is V/2 below free rolling. The rolling race creeps by some 5e-6 of V.
     assert speed[0] + 0.5 * V == pytest.approx(10.0 / 7.0 * MU * Q / M * times[0], rel=1e-5)
     assert abs(speed[1]) < 1e-5 * V
     (driven, *_), (rolled, *_) = forces((speed[0], turn[0]))
@@ -59,14 +55,10 @@ def test_a_ball_is_spun_up_by_the_driving_race():
 
 
 PIVOTING = [
-    (0.01, 0.01178068, 0.58898972),
-    (0.1, 0.11751520, 0.58318023),
-    (0.25, 0.28992237, 0.55309595),
-    (0.5, 0.55223308, 0.45559229),
-    (1.0, 0.88357293, 0.22089323),
-    (2.0, 0.97427858, 0.10190933),
+    (0.01, 0.01178068, 0.58898972), (0.1, 0.11751520, 0.58318023), (0.25, 0.28992237, 0.55309595),
+    (0.5, 0.55223308, 0.45559229), (1.0, 0.88357293, 0.22089323), (2.0, 0.97427858, 0.10190933),
     (5.0, 0.99598266, 0.04011545),
-]
+]  # fmt: skip
 """v/(a w), F/(mu N), M/(mu N a) of E3 by quadrature about the instant centre; the notes have the same six
 digits, but for two forces: .117516 and .289921."""
 
@@ -84,10 +76,8 @@ def pivot(slide: float, spin: float = 1.0) -> tuple[float, float]:
 
 @pytest.mark.parametrize(("slide", "force", "moment"), PIVOTING)
 def test_sliding_and_pivoting_share_the_friction(slide, force, moment):
-    """E3, Contensou, on a circular Hertz contact: 4e-6 is what the extrapolation of slip fields leaves.
-
-    The engine's six strips are off by 7.7 % of the force and 15.4 % of the moment.
-    """
+    """E3, Contensou, on a circular Hertz contact: 4e-6 is what the extrapolation of slip fields leaves."""
+    # The engine's six strips are off by 7.7 % of the force and 15.4 % of the moment.
     assert pivot(slide) == pytest.approx((force, moment), abs=4e-6)
     found = slip_field.py_func(np.float64(slide), 1.0, 0.0, 0.0, 0.25, 1e-18)
     assert found[0] == pytest.approx(force, rel=0.08)

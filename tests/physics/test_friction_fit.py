@@ -8,16 +8,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from separatrix.chain.hertz import contact_ellipse
+from separatrix import InputError, contact_ellipse, read_study
 from separatrix.chain.impact_restitution import hertz_coefficient
 from separatrix.chain.pocket_friction import contact_radius, sliding_speed
 from separatrix.friction.friction_file import FrictionFile, FrictionTest, Place, friction_text
 from separatrix.friction.friction_fit import TestedFriction, fit_friction
 from separatrix.friction.friction_law import StatedFriction
 from separatrix.friction.scatter import LinearModel, conditional
-from separatrix.ground.errors import InputError
 from separatrix.ground.reader import read_text
-from separatrix.study.reading import read_study
 
 ENVIRONMENT = "liquid nitrogen, 440C"
 
@@ -187,11 +185,7 @@ def test_a_medium_is_known_by_all_names_of_the_fluid():
 
 
 def test_intervals_of_the_parameters_hold_the_truth():
-    """200 simulated plans: the 95 % intervals of intercept and slope hold it in 90.5 to 98 % of them.
-
-    The benchmark friction_fit_coverage.py has 1000 sets; with 200 a share of 95 % scatters by 1.5 %, and the
-    limits are three of these below and two above.
-    """
+    """200 simulated plans: the 95 % intervals of intercept and slope hold it in 90.5 to 98 % of them."""
     rng, hits = np.random.default_rng(8), np.zeros(2)
     for _ in range(200):
         sample, speed = np.repeat(np.arange(5), 3), np.tile((1.0, 2.0, 5.0), 5)
@@ -202,18 +196,18 @@ def test_intervals_of_the_parameters_hold_the_truth():
         true = log(0.1) + 0.1 * one.covariates.centres[0], 0.1
         ends = [[one.posterior.quantile(c, p) for p in (0.025, 0.975)] for c in np.eye(2)]
         hits += [low <= t <= high for (low, high), t in zip(ends, true, strict=True)]
+    # The benchmark friction_fit_coverage.py has 1000 sets; with 200 a share of 95 % scatters by 1.5 %, and
+    # the limits are three of these below and two above.
     assert (hits >= 181).all()
     assert (hits <= 196).all()
 
 
 @pytest.mark.parametrize("found", [0.18, 0.045])
 def test_the_assumption_weighs_as_much_as_four_repeated_tests(found):
-    """Five tests, four beyond their mean, that scatter twice or half as much: midway in the logarithm.
-
-    The root mean square of a spread of scatters lies 9 % above its middle: hence 12 %.
-    """
+    """Five tests, four beyond their mean, that scatter twice or half as much: midway in the logarithm."""
     z = np.linspace(-1.0, 1.0, 5)
     tests = [measured(0.1 * exp(x)) for x in found * z / z.std(ddof=1)]
+    # The root mean square of a spread of scatters lies 9 % above its middle: hence 12 %.
     assert fitted(tests).scatter == pytest.approx(sqrt(0.09 * found), rel=0.12)
 
 
@@ -268,7 +262,6 @@ def test_any_number_of_equal_tests_has_a_fit(groups):
 
 
 # What must hold of friction files and fits, whatever the tests.
-
 
 FRICTION = st.floats(0.01, 1.0)
 POSITIVE = st.floats(1e-3, 100.0)

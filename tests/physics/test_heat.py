@@ -4,6 +4,7 @@ import math
 from dataclasses import replace
 
 import pytest
+from commands import extended
 
 import separatrix
 from separatrix.chain.contacts import bearing_state
@@ -23,27 +24,21 @@ from separatrix.study.study import Cooling, Guidance
 LN2 = Fluid(807.9576, 1.63216e-4)  # 77 K, 2 bar
 ORBIT, SPEED, RADIUS = 668.9886, 500.0 * math.pi, 0.0325
 COOLING = Cooling(
-    swirl=0.5,
-    flow="50 g/s",
-    race_conductance="5 W/K",
-    inner_cooling="20 W/K",
-    outer_cooling="30 W/K",
+    swirl=0.5, flow="50 g/s", race_conductance="5 W/K", inner_cooling="20 W/K", outer_cooling="30 W/K",
     ball_cooling="25 W/K",
-)
+)  # fmt: skip
 
 
 @pytest.fixture(scope="module")
 def study(tmp_path_factory):
     """Return the shipped study with its cage's sizes, its coolant and its steel."""
-    path = tmp_path_factory.mktemp("heat") / "cool.toml"
-    path.write_text(
-        'extends = "cryogenic-turbopump"\n[cage]\ninner_diameter = "58 mm"\nouter_diameter = "72 mm"\n'
-        'width = "14 mm"\n[cooling]\nswirl = 0.5\nflow = "50 g/s"\nrace_conductance = "5 W/K"\n'
-        'inner_cooling = "20 W/K"\nouter_cooling = "30 W/K"\nball_cooling = "25 W/K"\n'
-        'cage_cooling = "10 W/K"\n'
-        'steel_conductivity = "12 W/(m K)"\nsteel_heat_capacity = "180 J/kg/K"\n'
+    return extended(
+        tmp_path_factory.mktemp("heat"),
+        '[cage]\ninner_diameter = "58 mm"\nouter_diameter = "72 mm"\nwidth = "14 mm"\n'
+        '[cooling]\nswirl = 0.5\nflow = "50 g/s"\nrace_conductance = "5 W/K"\ninner_cooling = "20 W/K"\n'
+        'outer_cooling = "30 W/K"\nball_cooling = "25 W/K"\ncage_cooling = "10 W/K"\n'
+        'steel_conductivity = "12 W/(m K)"\nsteel_heat_capacity = "180 J/kg/K"\n',
     )
-    return separatrix.read_study(path)
 
 
 @pytest.fixture(scope="module")
@@ -136,18 +131,15 @@ def test_a_coolant_that_leaves_too_warm_is_noted(study, state):
 
 
 def test_flash_temperatures(study, state):
-    """Of another program: 16.9 and 6.1 K with an effusivity of 4065."""
+    """Of another program: 16.9 and 6.1 K with an effusivity of 4065; of the steel of the rings alone."""
     found = heat_balance(study, state)
     effusivity = math.sqrt(12.0 * study.bearing.ball_material.density * 180.0)
     ratio = 4065.0 / effusivity
     assert (found.flash_inner * ratio, found.flash_outer * ratio) == pytest.approx((16.9, 6.1), abs=0.1)
-
-
-def test_flash_is_of_the_steel_of_the_rings(study, state):
-    """Ceramic balls leave the density of the rings, whose conductivity and heat capacity are stated."""
+    # ceramic balls leave the density of the rings, whose conductivity and heat capacity are stated
     light = replace(study.bearing.ball_material, density=3200.0)
     hybrid = replace(study, bearing=replace(study.bearing, ball_material=light))
-    assert heat_balance(hybrid, state).flash_inner == heat_balance(study, state).flash_inner
+    assert heat_balance(hybrid, state).flash_inner == found.flash_inner
 
 
 @pytest.mark.parametrize(
@@ -155,11 +147,8 @@ def test_flash_is_of_the_steel_of_the_rings(study, state):
 )
 def test_boiling_limit(tmp_path, fluid, temperature, limit):
     """Of another program at 1 atm; the library's properties have five digits."""
-    path = tmp_path / "boils.toml"
-    path.write_text(
-        f'extends = "cryogenic-turbopump"\n[operation]\nfluid = "{fluid}"\ntemperature = "{temperature} K"\n'
-    )
-    assert boiling_limit(separatrix.read_study(path), temperature) == pytest.approx(limit, rel=1e-4)
+    study = extended(tmp_path, f'[operation]\nfluid = "{fluid}"\ntemperature = "{temperature} K"\n')
+    assert boiling_limit(study, temperature) == pytest.approx(limit, rel=1e-4)
 
 
 @pytest.mark.parametrize(
@@ -175,20 +164,14 @@ def test_boiling_limit(tmp_path, fluid, temperature, limit):
 def test_what_cooling_refuses(tmp_path, keys, line):
     """Each fault by its key."""
     lines = "".join(f"{name} = {value!r}\n" for name, value in keys.items())
-    path = tmp_path / "wrong.toml"
-    path.write_text(f'extends = "cryogenic-turbopump"\n[cooling]\n{lines}')
     with pytest.raises(InputError, match=line):
-        separatrix.read_study(path)
+        extended(tmp_path, f"[cooling]\n{lines}")
 
 
 def test_a_coolant_that_nobody_knows(tmp_path):
     """The library has no such state; or none is named."""
-    path = tmp_path / "warm.toml"
-    path.write_text(
-        'extends = "cryogenic-turbopump"\n[operation]\ntemperature = "200 K"\n[cooling]\nswirl = 0.5\n'
-    )
+    warm = extended(tmp_path, '[operation]\ntemperature = "200 K"\n[cooling]\nswirl = 0.5\n')
     with pytest.raises(InputError, match="has no density near 200 K in the library"):
-        separatrix.bearing(separatrix.read_study(path))
-    path.write_text('extends = "ball-218"\n[cooling]\nswirl = 0.5\n')
+        separatrix.bearing(warm)
     with pytest.raises(InputError, match=r"\[operation\] fluid is missing beside \[cooling\]"):
-        separatrix.read_study(path)
+        extended(tmp_path, "[cooling]\nswirl = 0.5\n", "ball-218")

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from scipy.integrate import quad
 from scipy.special import elliprd, elliprf
 
+from separatrix import InputError, Material, Race
 from separatrix.chain.creep import Creep, contact_creep, deformed_radius
 from separatrix.chain.hertz import (
     contact_ellipse,
@@ -21,8 +22,6 @@ from separatrix.chain.hertz import (
     elliptic_integrals,
     race_curvatures,
 )
-from separatrix.ground.errors import InputError
-from separatrix.study.study import Material, Race
 
 NITRIDE = Material(name="nitride", elastic_modulus=310e9, poisson_ratio=0.27, density=3210.0)
 ROUNDING = 1e-12  # some thousand operations in double precision
@@ -56,10 +55,7 @@ def test_circular_limit() -> None:
 
 @pytest.mark.parametrize("ratio", [1.0, 3.0, 26.0, 400.0])
 def test_approach_is_the_integral_of_boussinesq(ratio: float) -> None:
-    """The central displacement by quadrature of the pressure over angle, without elliptic integrals.
-
-    Along a ray at angle t the pressure integrates to pi p0 rho(t)/4 (the 1/r of Boussinesq cancels r).
-    """
+    """The central displacement by quadrature of the pressure over angle, without elliptic integrals."""
     ellipse = contact_ellipse(1000.0, 200.0, 200.0 / ratio, 110e9)
     a, b = ellipse.semi_major, ellipse.semi_minor
 
@@ -67,6 +63,7 @@ def test_approach_is_the_integral_of_boussinesq(ratio: float) -> None:
         return 0.25 * math.pi * ellipse.max_pressure / math.hypot(math.sin(t) / a, math.cos(t) / b)
 
     carried = 2.0 / 3.0 * math.pi * a * b * ellipse.max_pressure  # of a semi-ellipsoid of pressure
+    # Along a ray at angle t the pressure integrates to pi p0 rho(t)/4 (the 1/r of Boussinesq cancels r).
     assert carried == pytest.approx(1000.0, rel=ROUNDING)
     displacement = 4.0 * quad(ray, 0.0, 0.5 * math.pi, epsrel=1e-12, limit=200)[0] / (math.pi * 110e9)
     assert displacement == pytest.approx(ellipse.approach, rel=1e-9)  # the quadrature's own error

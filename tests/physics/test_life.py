@@ -9,10 +9,10 @@ from mobile_balls import study_of
 from scipy.special import ndtr, ndtri
 
 import separatrix
+from separatrix import LifeTable, solve
 from separatrix.chain import slip_work
 from separatrix.chain.contacts import bearing_state
 from separatrix.chain.slip_work import TrackWork, track_work
-from separatrix.chain.solution import solve
 from separatrix.study.study import Film, KinematicModel, Race, WearRates
 from separatrix.verdict.crossing import PLACES, Count, steepness
 from separatrix.verdict.life_table import Node, _accelerated, _bearing_wear, _drawn, _tests, life, wear_rates
@@ -20,7 +20,6 @@ from separatrix.verdict.wear_life import (
     THICKEST,
     BearingWear,
     Land,
-    LifeTable,
     Phase,
     Worn,
     causes,
@@ -103,28 +102,19 @@ def test_a_ball_wears_its_own_cap():
 
 
 TRACK = TrackWork(
-    across=np.array([-0.5, 0.5]),
-    share=np.array([0.5, 0.5]),
-    work=np.array([100.0, 100.0]),
-    passes=1.0,
+    across=np.array([-0.5, 0.5]), share=np.array([0.5, 0.5]), work=np.array([100.0, 100.0]), passes=1.0,
     area=1e-4,
-)
+)  # fmt: skip
 BEARING = BearingWear(
     tracks=(TRACK, TRACK), loads=(1.0, 1.0), ball_diameter=1e-2, ball_count=10, clearance=3e-4
 )
 FLAT = np.ones((2, 2))
 TABLE = LifeTable(
-    race_friction=np.array([0.05, 0.5]),
-    pocket_clearance=np.array([3e-4, 3e-3]),
-    critical_friction=0.05 / np.array([[0.05, 0.05], [0.5, 0.5]]) * 0.4,
-    steepness=30.0 * FLAT,
-    calm_sliding=2.0 * FLAT,
-    whirl_sliding=200.0 * FLAT,
-    calm_land_sliding=1.0 * FLAT,
-    whirl_land_sliding=1.0 * FLAT,
-    land_exponent=-1.0,
-    land_widening=1.5,
-)
+    race_friction=np.array([0.05, 0.5]), pocket_clearance=np.array([3e-4, 3e-3]),
+    critical_friction=0.05 / np.array([[0.05, 0.05], [0.5, 0.5]]) * 0.4, steepness=30.0 * FLAT,
+    calm_sliding=2.0 * FLAT, whirl_sliding=200.0 * FLAT, calm_land_sliding=1.0 * FLAT,
+    whirl_land_sliding=1.0 * FLAT, land_exponent=-1.0, land_widening=1.5,
+)  # fmt: skip
 """Critical friction falls as one over race friction: 0.4 at 0.05."""
 
 PHASE = [Phase(share=1.0, bearing=BEARING, table=TABLE)]
@@ -140,11 +130,13 @@ def worn(draws=1, **given):
     return Worn(**{name: np.broadcast_to(one, draws).astype(float) for name, one in (values | given).items()})
 
 
-def test_nothing_that_wears_lives_for_ever():
-    """P(unstable) stays where it is."""
+def test_nothing_that_wears_lives_for_ever_and_what_is_unstable_from_the_start_has_no_life():
+    """P(unstable) stays where it is; what becomes so within the first step has some life."""
     found = course(PHASE, worn(), 1e9)
     assert np.ptp(found.probability_unstable) == 0.0
     assert np.isinf(lives(found)).all()
+    assert lives(course(PHASE, worn(pocket_friction=0.8), 1e6))[0] == 0.0
+    assert lives(course(PHASE, worn(film_wear=1e-6, pocket_friction=0.2), 1e6))[0] == 0.5
 
 
 def test_a_film_that_wears_ends_a_cage_when_its_critical_friction_is_reached():
@@ -236,12 +228,6 @@ def test_race_friction_is_the_mean_by_load():
     found = course([replace(PHASE[0], bearing=bearing)], worn(film_wear=1e-9), 1e6)
     whole = 0.4 - 0.35 * (1.0 - math.exp(-5.0))
     assert found.race_friction[-1, 0] == pytest.approx(0.75 * 0.4 + 0.25 * whole, rel=1e-6)
-
-
-def test_what_is_unstable_from_the_start_has_no_life():
-    """Before anything has worn; what becomes so within the first step has some."""
-    assert lives(course(PHASE, worn(pocket_friction=0.8), 1e6))[0] == 0.0
-    assert lives(course(PHASE, worn(film_wear=1e-6, pocket_friction=0.2), 1e6))[0] == 0.5
 
 
 def test_phases_of_a_duty_cycle_share_the_time():

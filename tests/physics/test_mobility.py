@@ -14,10 +14,9 @@ from mobile_balls import NAMES, held, impact, modes_of, records, study_of
 from scipy.interpolate import CubicSpline
 from scipy.optimize import root
 
+from separatrix import BallTraction, InputError, SlipLaw, solve
 from separatrix.chain import contacts
 from separatrix.chain.ball_mobility import (
-    BallTraction,
-    SlipLaw,
     balanced,
     fitted_law,
     groove,
@@ -32,8 +31,6 @@ from separatrix.chain.contacts import Rolling, race_tracks
 from separatrix.chain.grooved_ball import slip_coefficients, touch
 from separatrix.chain.race_traction import exact_slope
 from separatrix.chain.slip_friction import friction_resultants
-from separatrix.chain.solution import solve
-from separatrix.ground.errors import InputError
 from separatrix.ground.units import Array
 from separatrix.study.study import KinematicModel, TractionModel, TractionSettings, Wear, Worn
 
@@ -178,11 +175,9 @@ def moved(name, *, model=None, film=None, **operation):
 
 @pytest.mark.parametrize("name", NAMES)
 def test_push_saturates_below_the_capacity_and_the_law_of_traction_with_it(name):
-    """At six times the speed of capacity over C_f all slips, and spin takes some of the friction.
-
-    The law has the exact slope at rest, and is 2 % of the capacity from the slip fields at most.
-    """
+    """At six times the speed of capacity over C_f all slips, and spin takes some of the friction."""
     found = moved(name)
+    # The law has the exact slope at rest, and is 2 % of the capacity from the slip fields at most.
     for force in (found.force_forward, found.force_backward):
         assert 0.85 < force[-1] / found.capacity < 1.0
     assert found.force_forward[0] / found.speed[0] == pytest.approx(found.linear.damping, rel=0.02)
@@ -294,10 +289,7 @@ def test_a_bearing_that_turns_the_other_way_is_the_same():
     assert two.linear.rates == pytest.approx(one.linear.rates, rel=1e-6)
     assert two.force_forward[-8:] == pytest.approx(one.force_forward[-8:], rel=1e-6)
     assert one.force_forward[-8:] != pytest.approx(one.force_backward[-8:], rel=1e-2)
-
-
-def test_outer_ring_rotation():
-    """The outer ring turns: the ball settles, with as many positive rates."""
+    # the outer ring turns: the ball settles, with as many positive rates
     found = moved("cryo", inner_speed=0.0, outer_speed=study_of("cryo").operation.inner_speed).linear
     assert np.all(found.rates > 0.0)
     assert 0.0 < found.damping_relaxed <= found.damping

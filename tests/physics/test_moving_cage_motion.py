@@ -16,7 +16,6 @@ from separatrix.study.study import Guidance, MotionModel, PocketShape, Stability
 SPIN = {"ball_spin": (-4083.2, 1942.6, -3.5), "ball_diameter": 11.1125e-3}
 SPACE = SPIN | {"motion": MotionModel.SPACE, "groove_damping": 766.0, "groove_stiffness": 5.05e6}
 
-
 run = partial(followed, direction=0.3)
 
 
@@ -40,16 +39,14 @@ def test_each_touch_is_a_kink_and_the_ledger_falls_with_the_square_of_the_step()
 
 @pytest.mark.parametrize(("eta", "friction"), [(0.9, 0.078), (0.8, 0.115), (0.6, 0.165)])
 def test_one_half_of_the_runs_whirl_at_the_known_friction(eta, friction):
-    """By a line through the shares at seven frictions; other programs' values, 100 seeds: within 10 %.
-
-    They count runs that end with more energy than they began with.
-    """
+    """By a line through the shares at seven frictions; other programs' values, 100 seeds: within 10 %."""
     frictions, energy = friction * np.linspace(0.8, 1.2, 7), 0.5 * AT_REST.mass * 0.5**2
     shares = []
     for f in frictions:
         cage = replace(AT_REST, race_damping=damping_of(eta), ball_cage_friction=f)
         shares.append(np.mean(run_ensemble(cage, SETTINGS).end_energy > energy))
     slope, offset = np.polyfit(frictions, shares, 1)
+    # They count runs that end with more energy than they began with.
     assert (0.5 - offset) / slope == pytest.approx(friction, rel=0.10)
 
 
@@ -122,11 +119,9 @@ def test_it_moves_as_exact_rotations_in_the_housing_to_first_order():
 
 @pytest.mark.parametrize("space", [False, True], ids=["plane", "space"])
 def test_random_cages_end_and_close_their_ledger(space):
-    """Two with every input at once: each run ends, every number is finite, and the ledger closes to 1e-2.
-
-    benchmarks/open_ledgers.py has 2000, of which the worst leaves 3.5e-3.
-    """
+    """Two with every input at once: each run ends, every number is finite, and the ledger closes to 1e-2."""
     rng = np.random.default_rng(7)
+    # benchmarks/open_ledgers.py has 2000, of which the worst leaves 3.5e-3.
     for _ in range(2):
         found = run_ensemble(random_cage(rng, space), replace(SETTINGS, duration=1e-3), kicks=[0.3], runs=4)
         assert np.all(found.outcome >= 0)

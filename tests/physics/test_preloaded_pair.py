@@ -9,10 +9,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import separatrix
+from separatrix import Arrangement, BallBearing, InputError, KinematicModel, Operation, PreloadKind
 from separatrix.chain.equilibrium import equilibrium
 from separatrix.chain.preloaded_pair import FAINT, GAPPED, PairLoads, pair_loads, with_axial_load
-from separatrix.ground.errors import InputError
-from separatrix.study.study import Arrangement, BallBearing, KinematicModel, Operation, PreloadKind
 
 FREE, FRICTION = KinematicModel.FREE, 0.1
 PRELOAD = 200.0
@@ -37,18 +36,16 @@ def displacement(at: Operation, load: float, bearing: BallBearing = BEARING) -> 
 @pytest.mark.parametrize("angle", [15.0, 40.0])
 @pytest.mark.parametrize("preload", [20.0, 160.0])
 def test_a_pair_gaps_at_2_sqrt_2_of_its_preload_and_later_as_the_angle_grows(angle, preload):
-    """Load ~ displacement^1.5 at a constant angle; the first order of its growth: 1 + 7 c^2/(4 s) x.
-
-    x is the displacement over the distance of the groove centres A, s and c are of the free angle. With
-    n = s x + c^2 x^2/2 the approach over A, the load goes as n^1.5 (s + x)/(1 + n). Second order: below 3 x^2
-    c^2/s^2 here.
-    """
+    """Load ~ displacement^1.5 at a constant angle; the first order of its growth: 1 + 7 c^2/(4 s) x."""
     bearing = replace(BEARING_218, contact_angle=math.radians(angle))
     found = solved(pair(preload=preload), bearing)
     span = (bearing.inner_conformity + bearing.outer_conformity - 1.0) * bearing.ball_diameter
     x, s, c = found.ring_offset / span, math.sin(bearing.free_angle), math.cos(bearing.free_angle)
     expected = 2.0 * math.sqrt(2.0) * (1.0 + 1.75 * c**2 / s * x)
     second_order = 3.0 * (c * x / s) ** 2  # derived above
+    # x is the displacement over the distance of the groove centres A, s and c are of the free angle. With n =
+    # s x + c^2 x^2/2 the approach over A, the load goes as n^1.5 (s + x)/(1 + n). Second order: below 3 x^2
+    # c^2/s^2 here.
     assert found.gap_load / preload == pytest.approx(expected, rel=second_order)
     assert found.gap_load / preload > 2.0 * math.sqrt(2.0)
 

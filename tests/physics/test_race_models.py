@@ -6,6 +6,7 @@ from functools import cache
 import pytest
 from cages import BEARING
 
+from separatrix import InputError, solve
 from separatrix.chain.contacts import race_tracks
 from separatrix.chain.exact.slope import traction_slope
 from separatrix.chain.race_traction import (
@@ -17,8 +18,6 @@ from separatrix.chain.race_traction import (
     film_strain,
     pressure_slip,
 )
-from separatrix.chain.solution import solve
-from separatrix.ground.errors import InputError
 from separatrix.study.study import (
     CageDesign,
     ContactPressure,
@@ -154,11 +153,7 @@ def test_the_power_of_the_slip_is_that_of_the_spin_moment():
 
 
 def test_slip_by_the_pressure_is_that_of_the_plane():
-    """Si3N4 on steel, bare: in the middle 2 beta p0/E* times a/(a + b); over xi_s = 2 mu p0/E*.
-
-    k_x^2/k^2 takes that share of any pressure on nested ellipses, at their centre. No cell of 20 x 32 is in
-    the middle: 5 %. Equal bodies have none.
-    """
+    """Si3N4 on steel, bare: in the middle 2 beta p0/E* times a/(a + b); over xi_s = 2 mu p0/E*."""
     ceramic = Material(name="Si3N4", elastic_modulus=310e9, poisson_ratio=0.26, density=3200.0)
     bare, hybrid = Film(race_friction=0.1), replace(BEARING, ball_material=ceramic)
     pair = (ceramic, BEARING.ring_material)
@@ -167,6 +162,8 @@ def test_slip_by_the_pressure_is_that_of_the_plane():
     state = solve(replace(study(bare), bearing=hybrid)).bearing
     outer = race_tracks(hybrid, bare, state)[1]
     share = outer.ellipse.semi_major / (outer.ellipse.semi_major + outer.ellipse.semi_minor)
+    # k_x^2/k^2 takes that share of any pressure on nested ellipses, at their centre. No cell of 20 x 32 is in
+    # the middle: 5 %. Equal bodies have none.
     assert pressure_slip(outer) == pytest.approx(share * beta / 0.1, rel=0.05)
     assert "pressure alone" in outside(bare, hybrid)
     assert pressure_slip(track(bare)) == 0.0

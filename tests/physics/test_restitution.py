@@ -10,10 +10,9 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 from scipy.special import beta
 
+from separatrix import InputError, Material, ball_pocket_stiffness, damping_ratio, restitution_factor
 from separatrix.chain.impact_restitution import (
-    ball_pocket_stiffness,
     damping_for,
-    damping_ratio,
     damping_ratio_for,
     equal_energy_stiffness,
     hertz_coefficient,
@@ -21,11 +20,8 @@ from separatrix.chain.impact_restitution import (
     hertzian_restitution_factor,
     race_damping_free_spin,
     restitution,
-    restitution_factor,
 )
 from separatrix.chain.pocket_friction import impact_force
-from separatrix.ground.errors import InputError
-from separatrix.study.study import Material
 
 MASS, STIFFNESS = 0.05, 3e6
 DIAMETER = BEARING.ball_diameter
@@ -138,7 +134,6 @@ def test_what_makes_no_impact_is_refused(eta, damping):
 
 
 # The restitution factor for inputs nobody thought of.
-
 
 positive = st.floats(1e-3, 1e5)
 

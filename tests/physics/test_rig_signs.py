@@ -7,9 +7,8 @@ import numpy as np
 import pytest
 
 import separatrix
+from separatrix import RunOutcome, solve
 from separatrix.cage import moving_cage, simulate
-from separatrix.cage.outcome import RunOutcome
-from separatrix.chain.solution import solve
 from separatrix.verdict.rig_signs import SLOWER, heard, loudest, rig_signs, slower
 
 WHEEL = solve(separatrix.read_study("momentum-wheel"))
@@ -41,11 +40,9 @@ def test_a_cage_without_friction_leaves_the_torque_to_the_races():
 
 
 def test_a_whirl_gives_its_power_to_the_torque(whirling):
-    """Pocket heat by the samples: friction, force, and the balls' surface against the moving cage.
-
-    The surface of a ball moves outward in front of it and inward behind, and along the axis by its pitch.
-    """
+    """Pocket heat by the samples: friction, force, and the balls' surface against the moving cage."""
     found, (chain, _, history) = whirling
+    # The surface of a ball moves outward in front of it and inward behind, and along the axis by its pitch.
     assert history.outcome is RunOutcome.WHIRLS
     speed = abs(chain.study.operation.inner_speed)
     balls, angle = chain.bearing.equilibrium, history.pocket_angle
@@ -88,9 +85,8 @@ def test_a_settled_cage_is_heard_where_it_turns_off_the_axis(whirling):
     settled = replace(history, outcome=RunOutcome.SETTLES, cause=None)
     line, share = heard(cage, circle(settled, 0.0, 40.0 / own))
     assert abs(math.log2(line / own)) <= 1.0 / 6.0
-    assert (
-        share > 0.9
-    )  # forty turns, of which a window of 20 leaves its main lobe: 4 lines of some 5 in the band
+    # forty turns, of which a window of 20 leaves its main lobe: 4 lines of some 5 in the band
+    assert share > 0.9
     assert heard(cage, circle(settled, -0.5 * own, 40.0 / own)) == (None, None)
     assert heard(cage, replace(settled, position=0.0 * settled.position)) == (None, None)
 

@@ -8,12 +8,11 @@ import numpy as np
 import pytest
 
 import separatrix
+from separatrix import Runner, moving_cage
 from separatrix.cage.disturbance import settings_for
-from separatrix.cage.moving_cage import moving_cage
 from separatrix.study.study import BallModel, CageModel, MotionModel, PocketShape, StabilitySettings
 from separatrix.verdict.beyond_models import Pocket
 from separatrix.verdict.crossing import Count, Response, Side
-from separatrix.verdict.long_jobs import Runner
 from separatrix.verdict.ranking import Knot, Limit, _knots, _limits
 from separatrix.verdict.safety_factor import (
     CageLimit,
@@ -27,13 +26,9 @@ from separatrix.verdict.stability_curve import CriticalFriction, critical_fricti
 
 SHIPPED = separatrix.read_study("cryogenic-turbopump")
 LIMIT = CageLimit(
-    own_critical_friction=0.25,
-    own_critical_friction_low=0.2,
-    own_critical_friction_high=0.3,
-    critical_kick=2.0,
-    critical_ball="free",
-    estimated_critical_friction=0.2,
-)
+    own_critical_friction=0.25, own_critical_friction_low=0.2, own_critical_friction_high=0.3,
+    critical_kick=2.0, critical_ball="free", estimated_critical_friction=0.2,
+)  # fmt: skip
 
 FULL = {"model": CageModel.FULL}
 
@@ -52,10 +47,7 @@ def test_the_safety_factor_is_the_ratio_of_two_frictions():
     wider = safety_factor(LIMIT, 0.125, (0.1, 0.15), 1.0)
     ends = math.hypot(math.log(0.8), math.log(1.2), 1.0)
     assert math.log(wider.safety_factor_low / 2.0) == pytest.approx(-ends)
-
-
-def test_beyond_what_was_searched_only_the_lower_end_is_known():
-    """Half the runs whirl at no friction up to 1: at the upper end of the friction S is above 1/0.3."""
+    # half the runs whirl at no friction up to 1: at the upper end of the friction S is above 1/0.3
     ends = {"own_critical_friction_low": 1.0, "own_critical_friction_high": None}
     found = safety_factor(replace(LIMIT, own_critical_friction=None, **ends), 0.2, (0.1, 0.3))
     assert found == SafetyFactor(safety_factor_low=1.0 / 0.3)
@@ -63,10 +55,7 @@ def test_beyond_what_was_searched_only_the_lower_end_is_known():
 
 @pytest.mark.parametrize("slope", [2.0, 10.0, 30.0])
 def test_the_interval_of_a_critical_friction_covers_it(slope):
-    """Of 300 responses whose logit rises by a slope in ln f: 95 %, less three deviations of that count.
-
-    Light cages have slopes of 2; with 3 as the lowest that is thought possible 72 % were covered.
-    """
+    """Of 300 responses whose logit rises by a slope in ln f: 95 %, less three deviations of that count."""
     rng, covered = np.random.default_rng(5), 0
     for _ in range(300):
         at = math.exp(rng.uniform(math.log(0.08), math.log(0.4)))
@@ -77,6 +66,7 @@ def test_the_interval_of_a_critical_friction_covers_it(slope):
 
         found = Response(look, 64).crossing(0.5, 48, at * math.exp(rng.normal(0.0, 0.5)))
         covered += found.low <= at <= found.high
+    # Light cages have slopes of 2; with 3 as the lowest that is thought possible 72 % were covered.
     assert covered / 300 >= 0.95 - 3.0 * math.sqrt(0.95 * 0.05 / 300)
 
 
@@ -158,15 +148,13 @@ def test_the_worst_disturbance_sets_the_critical_friction():
 
 
 def test_the_full_model_asks_free_balls_and_a_wider_race():
-    """Full: free balls decide where the friction of a whirl passes a quarter; the damper comes far lower.
-
-    Balls as rigid bodies on their whole slip fields had f_1/2 = 0.217 from 2 m/s, friction along e_r; along
-    the sliding of a ball that pitches by 25 degrees that is 0.217/cos 25 = 0.24 (findings of this round, P2),
-    within a tenth for 32 runs a point. The damper had 0.150.
-    """
+    """Full: free balls decide where the friction of a whirl passes a quarter; the damper comes far lower."""
     settings = StabilitySettings(kicks=(2.0,), reference_kick=2.0, runs=64)
     full = cage_limit(solved(model=CageModel.FULL), settings, Runner())
     paper = cage_limit(solved(model=CageModel.PAPER), settings, Runner())
+    # Balls as rigid bodies on their whole slip fields had f_1/2 = 0.217 from 2 m/s, friction along e_r; along
+    # the sliding of a ball that pitches by 25 degrees that is 0.217/cos 25 = 0.24 (findings of this round,
+    # P2), within a tenth for 32 runs a point. The damper had 0.150.
     assert (full.critical_ball, paper.critical_ball) == ("free", "damper")
     assert full.own_critical_friction == pytest.approx(0.24, rel=0.1)
     assert paper.own_critical_friction == pytest.approx(0.150, rel=0.1)

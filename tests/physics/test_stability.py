@@ -11,19 +11,12 @@ import numpy as np
 import pytest
 from cages import SMALL as CAGE
 
+from separatrix import Runner, critical_friction, restitution_threshold, stability_curve, wilson_interval
 from separatrix.cage import linear_critical_friction, run_ensemble
 from separatrix.cage.closed_forms import drift_rate_law
 from separatrix.study.study import Guidance, StabilitySettings
 from separatrix.verdict.crossing import cage_at
-from separatrix.verdict.judgement import wilson_interval
-from separatrix.verdict.long_jobs import Runner
-from separatrix.verdict.stability_curve import (
-    critical_friction,
-    curve_of_points,
-    restitution_threshold,
-    stability_curve,
-    threshold_factors,
-)
+from separatrix.verdict.stability_curve import curve_of_points, threshold_factors
 
 SETTINGS = StabilitySettings(kicks=(0.5,), reference_kick=0.5, runs=32, duration=0.1, seed=3)
 
@@ -54,11 +47,10 @@ def test_a_threshold_is_where_half_the_runs_grow(points, friction):
 
 
 def test_the_curve_falls_with_the_restitution_factor(points):
-    """A cage that gets more of its speed back is unstable at less friction (the paper, section 2.2).
-
-    More friction never raises a threshold, whatever the wiggles: the curve is cut further left; no tolerance.
-    """
+    """A cage that gets more of its speed back is unstable at less friction (the paper, section 2.2)."""
     heights = [point.critical_friction for point in points]
+    # More friction never raises a threshold, whatever the wiggles: the curve is cut further left; no
+    # tolerance.
     assert heights[0] > heights[len(heights) // 2] > heights[-1]
     values = [restitution_threshold(points, f / 100).value for f in range(50)]
     assert values == sorted(values, reverse=True)
@@ -79,12 +71,10 @@ def test_restitution_factors_that_are_given_are_used_as_they_are(curve):
 
 
 def test_the_band_holds_the_middle_and_depends_on_the_kick(curve):
-    """The critical friction is inside its band, each end inside its own interval.
-
-    The instability is sub-critical: at a restitution factor of 0.9 half the runs whirl first from 1 m/s.
-    """
+    """The critical friction is inside its band, each end inside its own interval."""
     each = (replace(SETTINGS, kicks=(kick,), reference_kick=kick) for kick in (0.2, 1.0))
     weak, strong = (critical_friction(CAGE, 0.9, one, band=False).critical_friction for one in each)
+    # The instability is sub-critical: at a restitution factor of 0.9 half the runs whirl first from 1 m/s.
     assert strong < weak
     for point in (*curve.curve, curve.here):
         assert point.critical_friction_low <= point.critical_friction <= point.critical_friction_high
@@ -145,15 +135,13 @@ def linear(eta):
 
 @pytest.mark.parametrize("chi", [0.0121, 0.215])
 def test_kick_and_clearance_count_by_their_ratio_only(chi):
-    """Twice the kick in twice the play is the same motion, twice as large: every bit of it.
-
-    So must be the speeds of the ball's surface, against which friction acts.
-    """
+    """Twice the kick in twice the play is the same motion, twice as large: every bit of it."""
     cage, ensemble = cage_at(CAGE, 0.8, 0.12), chi_settings(chi, 16)
     cage = replace(cage, ball_diameter=0.01, ball_spin=(-1e6, 0.0, 0.0))
     wide = replace(cage, pocket_clearance=2 * CAGE.pocket_clearance, ball_spin=(-2e6, 0.0, 0.0))
     small = run_ensemble(cage, ensemble)
     large = run_ensemble(wide, ensemble, kicks=[2 * kick for kick in ensemble.kicks])
+    # So must be the speeds of the ball's surface, against which friction acts.
     assert (small.outcome == large.outcome).all()
     assert (4 * small.end_energy == large.end_energy).all()
 

@@ -10,22 +10,11 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
+from separatrix import Creep, contact_ellipse, film_compliance, shear_field, traction_curve, traction_slope
 from separatrix.chain import strip as strip_module
-from separatrix.chain.creep import Creep
-from separatrix.chain.film_compliance import film_compliance
-from separatrix.chain.hertz import contact_ellipse
 from separatrix.chain.master_curve import film_tables, master_traction, matched_knots, nested_sticks
 from separatrix.chain.strip import node_pressure, solve_strip, strip_influence
-from separatrix.chain.traction_curve import (
-    GAUSS_NODES,
-    GAUSS_WEIGHTS,
-    LEVELS,
-    panel_edges,
-    reach,
-    shear_field,
-    traction_curve,
-    traction_slope,
-)
+from separatrix.chain.traction_curve import GAUSS_NODES, GAUSS_WEIGHTS, LEVELS, panel_edges, reach
 from separatrix.ground.errors import ConvergenceError, InputError
 from separatrix.study.study import Film, Material
 
@@ -205,7 +194,6 @@ def test_the_field_adds_up_to_the_curve():
 
 # Traction for contacts nobody thought of: trends, symmetries, scaling, Coulomb's law.
 
-
 XI = 2.0 * P0 / E  # saturation creep at friction 1
 NOISE = 6e-4  # two slopes, each with an interpolation error of 3e-4
 
@@ -215,6 +203,12 @@ rise = st.floats(1.05, 3.0)
 size = st.floats(-3.0, 2.0).map(lambda x: 10.0**x)
 signed = st.tuples(size, st.sampled_from([-1.0, 1.0])).map(lambda t: t[0] * t[1])
 quick = settings(max_examples=40)
+
+
+def toeplitz(nodes, lam):
+    """The matrix of the stick equations, written out."""
+    i = np.arange(nodes)
+    return strip_influence(nodes, lam)[i[:, None] - i[None, :] + nodes - 1]
 
 
 def creep_of(spin, heathcote=0.0):
@@ -243,11 +237,9 @@ def test_a_softer_film_never_raises_the_slope(mu, lam, factor, spin):
 @settings(max_examples=80)
 @given(friction, film, rise, size, st.one_of(st.just(0.0), signed))
 def test_with_heathcote_the_trends_hold_within_three_percent(mu, lam, factor, spin, heathcote):
-    """The moving offset may lift the slope by up to 3 % as the film softens; friction never lowers it.
-
-    That f_BT up is slope up holds for pure spin, too; the paper says the opposite (docs/deviations.md).
-    """
+    """The moving offset may lift the slope by up to 3 % as the film softens; friction never lowers it."""
     parts = creep_of(spin, heathcote)
+    # That f_BT up is slope up holds for pure spin, too; the paper says the opposite (docs/deviations.md).
     assert slope_of(parts, mu, lam * factor) <= slope_of(parts, mu, lam) * 1.03
     assert slope_of(parts, mu * factor, lam) >= slope_of(parts, mu, lam) * (1.0 - NOISE)
 
@@ -298,9 +290,7 @@ def test_coulombs_law_holds_on_every_element(level, lam, tilt, bulge):
     x = 1.0 - (2.0 * np.arange(nodes) + 1.0) / nodes
     course = level + tilt * x + bulge * np.sqrt(1.0 - x * x)
     strip = solve_strip(course, lam, nodes=nodes)
-    i = np.arange(nodes)
-    matrix = strip_influence(nodes, lam)[i[:, None] - i[None, :] + nodes - 1]
-    rest = 4.0 * course / nodes - matrix @ strip.shear
+    rest = 4.0 * course / nodes - toeplitz(nodes, lam) @ strip.shear
     stuck = strip.slip == 0.0
     assert np.all(np.abs(strip.shear) <= strip.pressure * (1.0 + 1e-11))  # the solver's own tolerance
     assert np.abs(rest[stuck]).max(initial=0.0) < 1e-9  # rounding times condition
@@ -309,7 +299,6 @@ def test_coulombs_law_holds_on_every_element(level, lam, tilt, bulge):
 
 
 # What traction refuses, warns of and returns.
-
 
 CREEP = Creep(spin=5.0, curvature=-2e4)
 GOOD = {"race_friction": 0.1, "film_compliance": 1e-15}
@@ -375,12 +364,6 @@ def test_least_index_steps_end_too(monkeypatch):
 
 
 # One strip: Carter's solution, the film's limits, Coulomb's law, and the same traction by other roads.
-
-
-def toeplitz(nodes, lam):
-    """The matrix of the stick equations, written out."""
-    i = np.arange(nodes)
-    return strip_influence(nodes, lam)[i[:, None] - i[None, :] + nodes - 1]
 
 
 def table_value(creep, lam):

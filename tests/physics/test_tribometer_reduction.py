@@ -33,10 +33,7 @@ def test_the_interval_holds_the_known_friction_of_logs_of_every_kind():
 
 @pytest.mark.parametrize("correlation", [0.0, 0.01, 0.03])
 def test_the_standard_error_is_the_scatter_of_means(correlation):
-    """The mean of 400 squared errors over the stated variance: one within a factor of the t distribution.
-
-    Without the correlation the stated error would be too small by sqrt(2 tau/step), 6 for 1 % of 2000 rows.
-    """
+    """The mean of 400 squared errors over the stated variance: one within a factor of the t distribution."""
     rng = np.random.default_rng(9)
     ratios = []
     for _ in range(400):
@@ -44,6 +41,7 @@ def test_the_standard_error_is_the_scatter_of_means(correlation):
         found = steady.steady_mean(friction.reshape(256, 2).mean(axis=1))
         ratios.append((found.mean - 0.12) / found.standard_error)
     within_one = np.mean(np.abs(ratios) < 0.7)
+    # Without the correlation the stated error would be too small by sqrt(2 tau/step), 6 for 1 % of 2000 rows.
     assert 0.42 < within_one < 0.60  # t holds 0.49 to 0.51 within 0.7; 400 logs scatter by 0.025
 
 
@@ -81,12 +79,10 @@ def test_an_exponential_is_cut_where_its_rest_is_smaller_than_the_error(share):
 
 
 def test_an_excess_that_is_over_is_seldom_told_not_to_end():
-    """An exponential of a tenth of the test, thirty times its noise, on a level of a hundred.
-
-    Of 100 logs at most five may say that it does not end.
-    """
+    """An exponential of a tenth of the test, thirty times its noise, on a level of a hundred."""
     rng = np.random.default_rng(16)
     found = [run_in(100.0 + 30.0 * np.exp(-10.0 * X) + rng.standard_normal(256)) for _ in range(100)]
+    # Of 100 logs at most five may say that it does not end.
     assert sum(not one.ends for one in found) <= 5
 
 
@@ -103,10 +99,7 @@ def test_an_excess_that_goes_on_is_told(excess):
 
 
 def test_an_excess_that_noise_hides_is_in_the_error():
-    """An excess that shifts the mean by 1.8 standard errors is seldom seen: of 300 logs 92 % are held.
-
-    A cut where it is seen, and no more, holds 86 % of them.
-    """
+    """An excess that shifts the mean by 1.8 standard errors is seldom seen: of 300 logs 92 % are held."""
     rng = np.random.default_rng(15)
     held = 0
     for _ in range(300):
@@ -115,20 +108,19 @@ def test_an_excess_that_noise_hides_is_in_the_error():
         mean = steady.steady_mean(values[round(found.end * 256) :])
         error = np.hypot(mean.standard_error, found.rest)
         held += abs(mean.mean) <= steady.half_width(error, mean.degrees_of_freedom)
+    # A cut where it is seen, and no more, holds 86 % of them.
     assert held > 0.89 * 300
 
 
 def test_noise_and_drift_are_seldom_cut():
-    """Without running-in few logs are cut: noise with and without correlation, a drift of 17 %.
-
-    Where noise is correlated over 3 % of the test a drift in it is no longer even: at most 15 of 100.
-    """
+    """Without running-in few logs are cut: noise with and without correlation, a drift of 17 %."""
     rng = np.random.default_rng(13)
     cut = [
         run_in(made(Recipe(rows=768, drift=0.02, correlation=c), rng).log.friction[::3]).end > 0.02
         for c in (0.0, 0.003, 0.01, 0.03)
         for _ in range(25)
     ]
+    # Where noise is correlated over 3 % of the test a drift in it is no longer even: at most 15 of 100.
     assert sum(cut) <= 15
 
 
@@ -143,10 +135,7 @@ def test_a_test_too_short_for_its_correlation_is_told_rather_than_trusted():
 
 @pytest.mark.parametrize("correlated", [False, True], ids=["white", "correlated"])
 def test_the_interval_holds_the_end_of_any_shape_of_running_in(correlated):
-    """Sixteen shapes, none of them assumed, ten logs each: 160 in which 92 % or more are to hold.
-
-    Docs/theory/friction-tests.md has 97 % and more of 6400. A coverage of 92 % fails this once in 10 000.
-    """
+    """Sixteen shapes, none of them assumed, ten logs each: 160 in which 92 % or more are to hold."""
     rng = np.random.default_rng(21)
     held = 0
     for name in running_in.SHAPES:
@@ -154,6 +143,7 @@ def test_the_interval_holds_the_end_of_any_shape_of_running_in(correlated):
             log, _ = running_in.made(name, rng, correlated=correlated)
             low, high = reduce_log(log).interval
             held += low <= running_in.LEVEL <= high
+    # Docs/theory/friction-tests.md has 97 % and more of 6400. A coverage of 92 % fails this once in 10 000.
     assert held >= binom.ppf(CHANCE, 160, 0.92)
 
 

@@ -6,15 +6,12 @@ from functools import lru_cache
 import numpy as np
 import pytest
 
+from separatrix import Judgement, StabilitySettings, Verdict, judge, read_study, solve
 from separatrix.cage import Cause, Ensemble, MovingCage, RunOutcome, moving_cage, run_ensemble
 from separatrix.cage.closed_forms import drive_energy
 from separatrix.cage.outcome import LIMITS, end_of_motion
 from separatrix.cage.rows import LOOK_COLUMNS, of
-from separatrix.chain.solution import solve
-from separatrix.study.reading import read_study
-from separatrix.study.study import StabilitySettings
 from separatrix.verdict.crossing import cage_at
-from separatrix.verdict.judgement import Judgement, Verdict, judge
 from separatrix.verdict.reasons import CageMotion, largest_room
 
 RUNS, DURATION = 8, 0.1
@@ -106,14 +103,12 @@ def test_friction_on_the_land_may_only_drag():
 
 
 def test_a_whirl_weaker_than_the_loads_rolls_whatever_the_duration():
-    """Unevenly driven balls hold the cage; dead pockets whirl it, at a seventh of their energy.
-
-    Pockets feed it, and no verdict calls it unstable: it rolls, from half to twice the usual duration.
-    """
+    """Unevenly driven balls hold the cage; dead pockets whirl it, at a seventh of their energy."""
     cage = cage_at(shipped("lox-turbopump", 500.0), 0.0, 0.45)
     settings = StabilitySettings(duration=0.15)
     found = run_ensemble(cage, settings, kicks=(0.9,), runs=RUNS)
     rolls = found.outcome == RunOutcome.ROLLS
+    # Pockets feed it, and no verdict calls it unstable: it rolls, from half to twice the usual duration.
     assert np.count_nonzero(rolls) > RUNS // 2
     assert np.all(found.end_energy[rolls] < 0.5 * drive_energy(cage))
     assert np.all(found.pocket_power[rolls] > 0.0)

@@ -6,10 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from test_exact_slope import INNER, OUTER
 
-from separatrix.chain.creep import Creep
+from separatrix import Creep, InputError, shear_field, traction_curve, traction_slope
 from separatrix.chain.film_compliance import Profile, film_compliance, track_of, worn_band
-from separatrix.chain.traction_curve import shear_field, traction_curve, traction_slope
-from separatrix.ground.errors import InputError
 from separatrix.study.study import Film, Material, Race, Wear, Worn
 
 SOFT = Material(name="soft film", elastic_modulus=1.5e9, poisson_ratio=0.4)
@@ -34,11 +32,10 @@ def band(at, share):
     [(0.1, 10.04, 21.1), (0.2, 11.07, 26.6), (0.35, 11.06, 31.0), (0.5, 11.01, 33.6)],
 )
 def test_a_worn_band_steepens_the_curve(share, inner, outer):
-    """Against the exact contact, of which strips know neither the coupling across the edges of the band.
-
-    The numbers are those of two programs for the exact contact; strips come within 10 % of them, worst where
-    the band is narrow beside the contact's length along rolling (measured: -9.9, -3.8, +1.1, +0.5 % outer).
-    """
+    """Against the exact contact, of which strips know neither the coupling across the edges of the band."""
+    # The numbers are those of two programs for the exact contact; strips come within 10 % of them, worst
+    # where the band is narrow beside the contact's length along rolling (measured: -9.9, -3.8, +1.1, +0.5 %
+    # outer).
     assert slope(INNER, *band(INNER, share)) == pytest.approx(inner, rel=0.06)
     assert slope(OUTER, *band(OUTER, share)) == pytest.approx(outer, rel=0.10)
 

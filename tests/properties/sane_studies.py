@@ -6,8 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from separatrix.study.reading import read_study
-from separatrix.study.study import Study
+from separatrix import Study, read_study
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -10,21 +10,15 @@ from cages import STEEL
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from separatrix import BallBearing, ConvergenceError, InputError, KinematicModel, Material, Operation
 from separatrix.chain.equilibrium import Equilibrium, equilibrium
-from separatrix.ground.errors import ConvergenceError, InputError
-from separatrix.study.study import BallBearing, KinematicModel, Material, Operation
 
 bearings = st.builds(
-    BallBearing,
-    ball_diameter=st.floats(8e-3, 12e-3),
-    pitch_diameter=st.floats(60e-3, 70e-3),
-    ball_count=st.integers(6, 13),
-    contact_angle=st.floats(0.0, math.radians(45.0)),
-    inner_conformity=st.floats(0.51, 0.55),
-    outer_conformity=st.floats(0.515, 0.53),
-    ball_material=st.just(STEEL),
-    ring_material=st.just(STEEL),
-)
+    BallBearing, ball_diameter=st.floats(8e-3, 12e-3), pitch_diameter=st.floats(60e-3, 70e-3),
+    ball_count=st.integers(6, 13), contact_angle=st.floats(0.0, math.radians(45.0)),
+    inner_conformity=st.floats(0.51, 0.55), outer_conformity=st.floats(0.515, 0.53),
+    ball_material=st.just(STEEL), ring_material=st.just(STEEL),
+)  # fmt: skip
 operations = st.builds(
     Operation,
     inner_speed=st.floats(-1500.0, 1500.0),
@@ -125,15 +119,10 @@ def extreme(seed: int) -> tuple[BallBearing, Operation, float]:
     pitch = max(count * ball / (math.pi * rng.uniform(0.1, 0.97)), closest)
     angle = float(rng.choice([0.0, rng.uniform(0.0, 5.0), rng.uniform(5.0, 45.0), rng.uniform(45.0, 89.0)]))
     bearing = BallBearing(
-        ball_diameter=ball,
-        pitch_diameter=pitch,
-        ball_count=count,
-        contact_angle=math.radians(angle),
-        inner_conformity=0.5 + spread(5e-4, 0.1),
-        outer_conformity=0.5 + spread(5e-4, 0.1),
-        ball_material=material,
-        ring_material=material,
-    )
+        ball_diameter=ball, pitch_diameter=pitch, ball_count=count, contact_angle=math.radians(angle),
+        inner_conformity=0.5 + spread(5e-4, 0.1), outer_conformity=0.5 + spread(5e-4, 0.1),
+        ball_material=material, ring_material=material,
+    )  # fmt: skip
     kind, load = int(rng.integers(4)), spread(1e-6, 1.0) * 1e-3 * modulus * ball**2 * count
     radial = load * spread(1e-3, 10.0) if kind in (1, 2) else 0.0
     moment = load * pitch * spread(1e-3, 3.0) * (1.0 if rng.random() < 0.5 else -1.0) if kind == 3 else None

@@ -13,19 +13,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from separatrix import InputError, Study, read_study
 from separatrix.friction.friction_file import FrictionFile, FrictionTest
 from separatrix.friction.logs.column_map import ColumnMap
 from separatrix.front import main
 from separatrix.front.page.worker import work
 from separatrix.ground import toml
-from separatrix.ground.errors import InputError
 from separatrix.ground.reader import Document, read_document, read_text
-from separatrix.study.reading import read_study
 from separatrix.verdict.ledger import NAME
 
 COMMAND = [sys.executable, "-m", "separatrix"]
 """The real command, as a process is started with."""
-
 
 SMALL = """
 extends = "cryogenic-turbopump"
@@ -74,6 +72,11 @@ def written(folder: Path, text: str | bytes, name: str = "study.toml") -> Path:
     path = folder / name
     path.write_bytes(text if isinstance(text, bytes) else text.encode())
     return path
+
+
+def extended(folder: Path, text: str, base: str = "cryogenic-turbopump") -> Study:
+    """Return a shipped study with this text over it."""
+    return read_study(written(folder, f'extends = "{base}"\n{text}', "case.toml"))
 
 
 def message_of(error: InputError) -> str:

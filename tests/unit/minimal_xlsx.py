@@ -60,12 +60,12 @@ def parts(sheets: dict[str, list[list[object]]]) -> dict[str, bytes]:
     return found
 
 
-def zipped(members: dict[str, str | bytes], compression: int = zipfile.ZIP_DEFLATED) -> bytes:
+def zipped(members: dict[str, str | bytes]) -> bytes:
     """Return a zip file of these members."""
     made = io.BytesIO()
-    with zipfile.ZipFile(made, "w", compression) as target:
+    with zipfile.ZipFile(made, "w") as target:
         for name, content in members.items():
-            target.writestr(zipfile.ZipInfo(name), content, compression)
+            target.writestr(zipfile.ZipInfo(name), content, zipfile.ZIP_DEFLATED)
     return made.getvalue()
 
 

@@ -4,27 +4,15 @@ Each writer takes arrays in SI units (friction without a unit) and gives the byt
 written with `digits` decimals in the unit of the format, so that a reader can be compared to the last digit.
 """
 
-from collections.abc import Sequence
-
 import numpy as np
 
 CODES = {"utf-8-sig": b"", "utf-16-le-mark": b"\xff\xfe", "utf-16-be-mark": b"\xfe\xff"}
 
 
-def anton_paar(
-    friction,
-    time,
-    *,
-    laps=None,
-    nano: bool = False,
-    decimal: str = ".",
-    encoding: str = "cp1252",
-    newline: str = "\r\n",
-    missing: str = "",
-) -> bytes:
+def anton_paar(friction, time, *, nano=False, decimal=".", encoding="cp1252", newline="\r\n", missing=""):
     """Anton Paar / CSM TRB: ``key : value [unit]`` lines, one line of headers, tabs between the columns."""
     distance, speed, load = time * 0.1, 0.1, 5.0
-    laps = distance / (2 * np.pi * 0.015) if laps is None else laps
+    laps = distance / (2 * np.pi * 0.015)
     force, unit = (1e3, "mN") if nano else (1.0, "N")
     head = [
         "Nano Tribometer" if nano else "TRB3 Tribometer",
@@ -36,10 +24,9 @@ def anton_paar(
         "Single-way mode",
         "",
     ]
-    header = (
-        "Time [s]\tDistance [m]\tLaps\tSequence ID\tCycle ID\tMax Linear Speed [m/s]\t"
-        f"Nominal Load [{unit}]\t"
-        f"\u00b5\tAngle [\u00b0]\tFriction Force [{unit}]\tPenetration Depth [\u00b5m]"
+    header = "Time [s]\tDistance [m]\tLaps\tSequence ID\tCycle ID\tMax Linear Speed [m/s]\t"
+    header += (
+        f"Nominal Load [{unit}]\t\u00b5\tAngle [\u00b0]\tFriction Force [{unit}]\tPenetration Depth [\u00b5m]"
     )
     one = np.ones_like(time)
     columns = [time, distance, laps, one, np.floor(laps), speed * one, load * force * one, friction]
@@ -50,14 +37,7 @@ def anton_paar(
     return encoded([*head, header, *[line.replace(".", decimal) for line in text]], encoding, newline)
 
 
-def rtec(
-    friction,
-    time,
-    *,
-    speed_rpm: float = 120.0,
-    steps: Sequence[int] | None = None,
-    total: str = "00:01:08.25",
-) -> bytes:
+def rtec(friction, time, *, speed_rpm=120.0, steps=None, total="00:01:08.25"):
     """Rtec MFT: a line of keys over one of values, headers and rows that end in a comma, and a total time."""
     one = np.ones_like(time)
     number = one if steps is None else np.asarray(steps, float)
@@ -70,7 +50,7 @@ def rtec(
     return encoded([*head, header, *text, *tail], "utf-8", "\r\n")
 
 
-def umt(friction, time, *, reciprocating: bool = False, steps: int = 1, unit: str = "g") -> bytes:
+def umt(friction, time, *, reciprocating=False, steps=1, unit="g"):
     """Bruker (CETR) UMT: for each step its keys, headers, a line of units, an empty line, and the rows.
 
     Forces are in gram-force with compression negative; `steps` divides the rows evenly, time begins anew.
@@ -91,7 +71,7 @@ def umt(friction, time, *, reciprocating: bool = False, steps: int = 1, unit: st
     return encoded(lines, "utf-8", "\r\n")
 
 
-def compend(friction, time, *, fast_data_every: int = 0) -> bytes:
+def compend(friction, time, *, fast_data_every=0):
     """Phoenix Compend: rows that begin and end with a tab, with lines naming files of fast data between."""
     load = np.full_like(time, 20.0)
     names = ["Test Time (s)", "Load (N)", "Friction (N)", "Total Cycles", "Contact Potential (mV)", "CoF"]
@@ -106,18 +86,8 @@ def compend(friction, time, *, fast_data_every: int = 0) -> bytes:
 
 
 def plain_csv(
-    columns: dict[str, np.ndarray],
-    *,
-    separator: str = ",",
-    decimal: str = ".",
-    units: Sequence[str] = (),
-    head: Sequence[str] = (),
-    tail: Sequence[str] = (),
-    encoding: str = "utf-8",
-    newline: str = "\n",
-    digits: int = 6,
-    missing: str = "",
-) -> bytes:
+    columns, *, separator=",", decimal=".", units=(), head=(), tail=(), encoding="utf-8", digits=6, missing=""
+):
     """A table with its header, perhaps a line of units below it, and lines before and after."""
     lines = [*head, separator.join(columns)]
     if units:
@@ -125,10 +95,10 @@ def plain_csv(
     text = rows(list(columns.values()), separator, digits, missing)
     if decimal != ".":
         text = [line.replace(".", decimal) for line in text]
-    return encoded([*lines, *text, *tail], encoding, newline)
+    return encoded([*lines, *text, *tail], encoding, "\n")
 
 
-def rows(columns: Sequence[np.ndarray], separator: str, digits: int, missing: str) -> list[str]:
+def rows(columns, separator, digits, missing):
     """Rows of numbers; NaN is written as `missing`."""
     texts = [
         [missing if value != value else f"{value:.{digits}f}" for value in np.asarray(column, float).tolist()]
@@ -137,7 +107,7 @@ def rows(columns: Sequence[np.ndarray], separator: str, digits: int, missing: st
     return [separator.join(row) for row in zip(*texts, strict=True)]
 
 
-def encoded(lines: Sequence[str], encoding: str, newline: str) -> bytes:
+def encoded(lines, encoding, newline):
     """The lines in an encoding; ``utf-16-le-mark`` and its like with a byte order mark."""
     text = newline.join(lines) + newline
     if encoding in CODES and encoding != "utf-8-sig":
@@ -145,6 +115,6 @@ def encoded(lines: Sequence[str], encoding: str, newline: str) -> bytes:
     return text.encode(encoding)
 
 
-def as_written(values: np.ndarray, digits: int = 6) -> np.ndarray:
+def as_written(values, digits=6):
     """The numbers that a reader must give back for values written with this number of decimals."""
     return np.array([float(f"{value:.{digits}f}") for value in np.asarray(values, float).tolist()])

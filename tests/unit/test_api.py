@@ -2,13 +2,12 @@
 
 import copy
 import html
-import json
 from dataclasses import replace
 from importlib import resources
 from pathlib import Path
 
 import pytest
-from commands import SMALL, written
+from commands import SMALL, document, written
 
 import separatrix
 from separatrix.front import api, main
@@ -83,9 +82,7 @@ def test_a_check_fits_a_screen_and_full_shows_the_rest(elsewhere, capsys):
 def test_the_speed_parameter_and_the_static_pressure_are_those_of_the_bearing(elsewhere, capsys):
     """DN is bore times speed; the pressure at rest is that of `bearing` at 0 rpm."""
     Path("still.toml").write_text('extends = "cryogenic-turbopump"\n[operation]\ninner_speed = "0 rpm"\n')
-    assert main(["check", "cryogenic-turbopump", "--json"]) == 0
-    checked = json.loads(capsys.readouterr().out)
-    assert main(["bearing", "still.toml", "--json"]) == 0
-    still = json.loads(capsys.readouterr().out)["contacts"]
+    checked = document(capsys, "check", "cryogenic-turbopump")
+    still = document(capsys, "bearing", "still.toml")["contacts"]
     for race in ("inner", "outer"):
         assert checked["static"][race]["max_pressure"] == still[race]["max_pressure"]

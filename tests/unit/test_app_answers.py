@@ -66,7 +66,7 @@ def until(page, holds, but=("refused", "failed")):
 
 
 def test_an_answer_is_the_page_of_its_document(page, root):
-    """The verdicts of the files that the command line writes; its figures are fetched."""
+    """The verdicts of the files that the command line writes; its figures and its zip file are fetched."""
     found = json.loads((root / "small" / "rank.json").read_text())
     text = page.get("/answer/rank/small.toml").text
     for row in found["overall"]:
@@ -76,6 +76,8 @@ def test_an_answer_is_the_page_of_its_document(page, root):
     assert places
     for place in places:
         assert 'data-ways="[[' in page.get(place).text
+    with zipfile.ZipFile(BytesIO(page.get("/zip/small.toml").content)) as files:
+        assert {"small.toml", "small/rank.json", "small/bearing.txt"} <= {*files.namelist()}
 
 
 @pytest.mark.parametrize("damage", ["{", "[]", '{"verb": "bearing"}', "interrupted"])
@@ -206,9 +208,3 @@ def test_an_import_is_seen_from_within(tmp_path):
     made.loader.exec_module(module)
     assert is_importing(module.frame)
     assert not is_importing(sys._getframe())
-
-
-def test_everything_is_downloaded_at_once(page):
-    """The study and every file of its answers."""
-    with zipfile.ZipFile(BytesIO(page.get("/zip/small.toml").content)) as found:
-        assert {"small.toml", "small/rank.json", "small/bearing.txt"} <= {*found.namelist()}

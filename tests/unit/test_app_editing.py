@@ -10,14 +10,12 @@ import pytest
 from commands import SMALL, root_of
 from fastapi.testclient import TestClient
 
+from separatrix import InputError, Study, shipped_studies, template
 from separatrix.front.page import editing as draft
 from separatrix.front.page.folder import Folder
 from separatrix.front.page.server import application
 from separatrix.front.page.worker import Job, answered
-from separatrix.ground.errors import InputError
 from separatrix.ground.schema import is_record, keys_of
-from separatrix.study.study import Study, shipped_studies
-from separatrix.study.template import template
 from separatrix.verdict.ledger import NAME
 
 COMMENTED = """# a study
@@ -177,10 +175,7 @@ def test_a_list_with_comments_is_changed_in_the_text():
     assert draft.edited(text, "ranking", "materials", '["A", "B"]') == text
     found = draft.edited(text.replace(" # a", ""), "ranking", "materials", '["B", "C"]')
     assert found == '[ranking]\nmaterials = ["B", "C"] # both\n'
-
-
-def test_a_new_key_is_above_the_comment_of_the_next_section():
-    """The comment is about what follows it."""
+    # a comment is about what follows it: a new key is above that of the next section
     found = draft.edited('[cage]\nmass = "1 g"\n\n# worn\n[film]\n', "cage", "land_friction", "0.2")
     assert found == '[cage]\nmass = "1 g"\nland_friction = 0.2\n\n# worn\n[film]\n'
 
@@ -226,24 +221,18 @@ def test_a_new_study_is_a_copy_or_the_template(page):
     assert (root_of(page) / "other.toml").read_text() == template()
 
 
-@pytest.mark.parametrize(
-    ("method", "place", "status", "words"),
-    [
-        ("GET", "/nowhere", 404, "GET /nowhere is not an address of this page."),
-        ("GET", "/static/nothing.js", 404, "GET /static/nothing.js is not an address of this page."),
-        ("GET", "/edit/small.toml", 405, "GET /edit/small.toml is not an address of this page."),
-        ("POST", "/jobs/x/cancel", 404, "POST /jobs/x/cancel is not an address of this page."),
-    ],
-)
-def test_a_wrong_address_is_answered_with_a_page(page, method, place, status, words):
+ADDRESSES = {"GET /nowhere": 404, "GET /static/nothing.js": 404, "GET /edit/small.toml": 405}
+
+
+@pytest.mark.parametrize(("asked", "status"), (ADDRESSES | {"POST /jobs/x/cancel": 404}).items())
+def test_a_wrong_address_is_answered_with_a_page(page, asked, status):
     """A person reads a sentence and finds the way back."""
-    found = page.request(method, place)
-    assert (found.status_code, words in found.text) == (status, True)
+    found = page.request(*asked.split())
+    assert (found.status_code, f"{asked} is not an address of this page." in found.text) == (status, True)
     assert "Back to the studies" in found.text
 
 
 # A link out of the page's folder is answered like a missing file; nothing is written through it.
-
 
 NEIGHBOUR = "the study of a neighbour"
 ANSWER = {
@@ -315,8 +304,7 @@ def test_a_draft_outside_is_neither_shown_nor_written(page, outside):
     found = page.get("/study/small.toml").text
     assert NEIGHBOUR not in found
     assert "unsaved edits" not in page.get("/").text
-    version = found.partition('name="version" value="')[2][:16]
-    page.post("/edit/small.toml", data={"version": version, "text": SMALL + "# mine\n"})
+    page.post("/edit/small.toml", data={"version": version(found), "text": SMALL + "# mine\n"})
     assert before(outside) == kept
     assert "# mine" in draft.read_text()
 

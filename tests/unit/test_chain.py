@@ -3,13 +3,12 @@
 from dataclasses import replace
 
 import pytest
+from commands import extended
 
+from separatrix import InputError, read_study, solve
 from separatrix.cage import MovingCage, moving_cage, settings_for
 from separatrix.chain.impact_restitution import ball_pocket_stiffness, hertz_coefficient
-from separatrix.chain.solution import solve
-from separatrix.ground.errors import InputError
 from separatrix.study.candidates import other_than_candidates, require_friction, required_environment
-from separatrix.study.reading import read_study
 from separatrix.study.study import (
     Candidate,
     Film,
@@ -176,9 +175,7 @@ def test_a_stiffness_by_hertz_in_a_bore_says_that_it_is_of_a_flat_wall():
 
 # One cage and one environment for every verb: what a study names, and what it must say.
 
-
-OTHERS = """extends = "cryogenic-turbopump"
-[cage]
+OTHERS = """[cage]
 {cage}
 [operation]
 fluid = "{fluid}"
@@ -196,16 +193,7 @@ friction = {{ "LN2, AISI 440C" = 0.1, "air, 440c" = 0.4 }}
 
 def case(tmp_path, cage='material = "My compound"', fluid="liquid nitrogen", ranking=""):
     """A study with two candidates of its own."""
-    path = tmp_path / "case.toml"
-    path.write_text(OTHERS.format(cage=cage, fluid=fluid, ranking=ranking))
-    return read_study(path)
-
-
-def extended(tmp_path, text):
-    """The shipped study with some lines changed."""
-    path = tmp_path / "case.toml"
-    path.write_text('extends = "cryogenic-turbopump"\n' + text)
-    return read_study(path)
+    return extended(tmp_path, OTHERS.format(cage=cage, fluid=fluid, ranking=ranking))
 
 
 def test_a_cage_of_another_material_says_whose_curve_is_shown(tmp_path):

@@ -5,16 +5,16 @@ A file that a user names is a regular one: a pipe or a device, which may never e
 
 import json
 import os
+import shlex
 from pathlib import Path
 
 import pytest
-from commands import refused
-from test_study_refusals import VALID
+from commands import SMALL, refused, rows_of
+from test_study import VALID
 
 import separatrix
-from separatrix.cage import RunOutcome
+from separatrix import InputError, RunOutcome
 from separatrix.front import cli, main
-from separatrix.ground.errors import InputError
 from separatrix.ground.files import size_of
 
 pytestmark = pytest.mark.usefixtures("elsewhere")
@@ -81,18 +81,54 @@ USAGE = {
     "new over a folder": (["new", "folder.toml"], "folder"),
     "new without its folder": (["new", "nowhere/mine.toml"], "nowhere"),
 }
+OPTIONS = r"""
+simulate le7 --model full :: [cage] is missing; `--model` needs it
+sweep le7 --model paper :: [cage] is missing; `--model` needs it
+rank cryogenic-turbopump --model cube :: full, paper
+map small.toml --x cage.mas=1..2g :: Did you mean cage.mass?
+map small.toml --y restitution_factor=0..1 :: restitution_factor twice
+map small.toml --x kick=0.1..1m/s --kick '1 m/s' :: exclude each other
+map small.toml --points 1 :: --points
+map small.toml --runs 0 :: --runs
+map small.toml --x cage.pocket_clearance=20..40mm:2 --points 2 :: no point that could be run
+simulate cryogenic-turbopump --kick 2 :: needs a unit of speed
+simulate cryogenic-turbopump --kick '0 m/s' :: must be >
+simulate cryogenic-turbopump --kick '-1 m/s' :: must be >
+simulate cryogenic-turbopump --run -1 :: --run must lie between
+sweep momentum-wheel :: --vary is missing
+sweep momentum-wheel --vary cage.mass=1..2g --cases c.csv :: exclude each other
+sweep momentum-wheel --vary cage.mass=1..2g --vary cage.mass=1..2g :: must name each parameter once
+sweep momentum-wheel --vary kick=1..2m/s :: not a numeric input that a sweep can vary
+sweep momentum-wheel --vary cage.mass=1..2g:1000 --vary film.thickness=1..2um:1000 :: at most 100000 cases
+sweep momentum-wheel --cases nope.csv :: cannot be read
+sensitivity cryogenic-turbopump --samples 0 :: must be a power of two from 64
+sensitivity cryogenic-turbopump --samples -64 :: must be a power of two from 64
+sensitivity cryogenic-turbopump --samples 32 :: must be a power of two from 64
+sensitivity cryogenic-turbopump --samples 1000 :: Try 1024.
+sensitivity cryogenic-turbopump --samples 131072 :: to 65536
+sensitivity cryogenic-turbopump --samples 999999999999999999999999999999 :: to 65536
+materials list --kind flim :: Did you mean film?
+materials list --library no.toml :: --library does not name a file
+materials show :: Missing argument 'NAME'
+materials show '440 C' :: Did you mean 440C?
+materials show '' :: is not a record of the library
+materials show 440C --kind film :: is not a film of the library
+"""
+CALLED = USAGE | {call: (shlex.split(call), said) for call, (said,) in rows_of(OPTIONS)}
 
 
-@pytest.mark.parametrize("case", USAGE)
-def test_wrong_usage_is_refused_in_one_line(case, capsys):
-    """Each misuse of the command line itself; what is there stays as it was."""
+@pytest.mark.parametrize(("arguments", "said"), CALLED.values(), ids=CALLED)
+def test_wrong_usage_is_refused_in_one_line(arguments, said, capsys):
+    """Each misuse of the command line and of the options of a verb; what is there stays as it was."""
     Path("folder.toml").mkdir()
     Path("study.toml").write_text(VALID)
     Path("empty.toml").write_text("")
+    Path("small.toml").write_text(SMALL)
     for taken in ("taken.toml", "study"):
         Path(taken).write_text("mine")
-    arguments, said = USAGE[case]
-    assert said in refused(capsys, *arguments)
+    line = refused(capsys, *arguments)
+    assert said in line
+    assert line.startswith("separatrix: ")
     assert Path("taken.toml").read_text() == Path("study").read_text() == "mine"
 
 
@@ -160,12 +196,6 @@ def test_no_verb_waits_for_a_pipe(capsys, call):
     assert " is not a regular file. Save its output to a file, and name that.\n" in refused(capsys, *call)
 
 
-def test_a_reader_that_is_called_by_itself_refuses_a_pipe_too(folder):
-    """One that the verbs reach only after a check of their own."""
-    with pytest.raises(InputError, match="is not a regular file"):
-        separatrix.load(folder / "p.json")
-
-
 def test_the_size_of_a_regular_file_is_told_and_all_else_refused(folder):
     """Links are followed; no file, a name with a NUL or too long a name, a folder."""
     (folder / "link.csv").symlink_to("a.csv")
@@ -180,10 +210,11 @@ def test_the_size_of_a_regular_file_is_told_and_all_else_refused(folder):
         with pytest.raises(InputError) as caught:
             size_of(path, "it")
         assert str(caught.value) == line
+    with pytest.raises(InputError, match="is not a regular file"):  # the verbs have a check of their own
+        separatrix.load(folder / "p.json")
 
 
 # Cages at the edge of what can be: each command answers, or refuses in one line and writes nothing.
-
 
 BASE = """
 extends = "cryogenic-turbopump"

@@ -13,14 +13,7 @@ import pytest
 
 import separatrix
 from separatrix.ground import compiled
-from separatrix.ground.compiled import (
-    TARGET,
-    UNUSED,
-    VERSIONS,
-    cache_folder,
-    shipped_folder,
-    source_stamp,
-)
+from separatrix.ground.compiled import TARGET, UNUSED, VERSIONS, cache_folder, shipped_folder, source_stamp
 
 PACKAGE = Path(separatrix.__file__).parent
 ROOT = PACKAGE.parents[1]
@@ -109,7 +102,7 @@ def test_a_change_in_any_file_that_a_kernel_can_see_is_seen(tmp_path, line):
 
 
 def test_caches_of_other_sources_are_removed_once_they_are_old(tmp_path, monkeypatch):
-    """An old one goes, a young one and anything else stay."""
+    """An old one goes, a young one and anything else stay; without a folder nothing is cached."""
     monkeypatch.setitem(compiled.CONFIG, "CACHE_DIR", str(tmp_path))
     for name in ("separatrix-kernels-0", "separatrix-kernels-1", "other"):
         (tmp_path / name).mkdir()
@@ -118,10 +111,7 @@ def test_caches_of_other_sources_are_removed_once_they_are_old(tmp_path, monkeyp
         os.utime(tmp_path / name, (then, then))
     mine = cache_folder(PACKAGE)
     assert {path.name for path in tmp_path.iterdir()} == {mine.name, "separatrix-kernels-1", "other"}
-
-
-def test_where_no_folder_can_be_written_nothing_is_cached(tmp_path, monkeypatch):
-    """A file stands in the place of each folder; the kernels would be compiled at each start."""
+    # a file in the place of the folder: the kernels would be compiled at each start
     (tmp_path / "file").write_text("")
     monkeypatch.setitem(compiled.CONFIG, "CACHE_DIR", str(tmp_path / "file"))
     assert cache_folder(PACKAGE) is None

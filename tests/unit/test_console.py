@@ -38,11 +38,12 @@ def run(*arguments: str, **options) -> subprocess.CompletedProcess:
 
 
 def test_help_names_every_verb_in_the_order_of_the_chain():
-    """`--help` answers with status 0 and lists the verbs; nothing on standard error."""
+    """It answers with status 0, nothing on standard error; `--version` is a line with name and version."""
     done = run("--help")
     assert (done.returncode, done.stderr) == (0, "")
     found = re.findall(r"^  (\w+)  +\w", done.stdout.partition("Commands:")[2], re.MULTILINE)
     assert found == ["demo", *VERBS]
+    assert re.fullmatch(r"separatrix \d+\.\d+\.\d+\S*\n", run("--version").stdout)
 
 
 @pytest.mark.parametrize("verb", VERBS)
@@ -52,12 +53,6 @@ def test_each_verb_has_help(verb, capsys):
     said = capsys.readouterr().out
     common = ("--json", "--out", "--quiet", "--jobs") if "STUDY" in said else ("separatrix",)
     assert all(option in said for option in common)
-
-
-def test_version_is_one_line():
-    """`--version` says name and version."""
-    done = run("--version")
-    assert re.fullmatch(r"separatrix \d+\.\d+\.\d+\S*\n", done.stdout)
 
 
 def test_a_reader_that_goes_away_is_no_error():
@@ -129,7 +124,7 @@ def test_an_interrupt_is_one_line_and_status_130(tmp_path):
 
 
 def test_life_is_shown_where_there_is_no_terminal(monkeypatch, capsys):
-    """A plain line now and then with how far the work is, by the clock: the work itself need not speak."""
+    """A plain line now and then with how far the work is, by the clock; quiet is quiet."""
     monkeypatch.setattr(console, "LINE_EVERY", 0.02)
     before = threading.active_count()
     with console.progress_bar("rank case", quiet=False) as life:
@@ -140,6 +135,10 @@ def test_life_is_shown_where_there_is_no_terminal(monkeypatch, capsys):
     assert lines[0].startswith("separatrix: rank case: at work for 0.0")
     assert "separatrix: rank case: 25 % after 0." in lines[-1]
     assert threading.active_count() == before
+    with console.progress_bar("rank case", quiet=True) as life:
+        life(50, 100)
+        time.sleep(0.1)
+    assert capsys.readouterr() == ("", "")
 
 
 def test_nothing_is_estimated_before_a_tenth_nor_of_unknown_work(monkeypatch):
@@ -164,21 +163,10 @@ def test_compilation_is_told_once(capsys):
     kernels = [part(lambda x: x + 1.0), part(lambda x: x + 2.0)]
     with console.progress_bar("rank case", quiet=False):
         assert [kernel(1.0) for kernel in kernels] == [2.0, 3.0]
-    assert (
-        capsys.readouterr().err
-        == "separatrix: rank case: the solver is compiled once on this machine, about a minute in all.\n"
-    )
+    line = "separatrix: rank case: the solver is compiled once on this machine, about a minute in all.\n"
+    assert capsys.readouterr().err == line
     assert gc.isenabled()
     assert COMPILING.heard == []
-
-
-def test_quiet_is_quiet(monkeypatch, capsys):
-    """No bar, no line, and nothing is timed to be said."""
-    monkeypatch.setattr(console, "LINE_EVERY", 0.01)
-    with console.progress_bar("rank case", quiet=True) as life:
-        life(50, 100)
-        time.sleep(0.05)
-    assert capsys.readouterr() == ("", "")
 
 
 def write_half(folder: Path) -> None:

@@ -7,10 +7,9 @@ import numpy as np
 import pytest
 from cages import ON_A_LAND
 
-from separatrix.cage import Cause, History, MovingCage, RunOutcome, analyse
+from separatrix import Cause, History, MotionModel, MovingCage, RunOutcome, analyse
 from separatrix.cage.course import SOURCES, ball_set_speed, phase_of
 from separatrix.cage.numbers import look_time
-from separatrix.study.study import MotionModel
 
 OMEGA, BALLS, RADIUS = 600.0, 5, 0.03
 TIME = np.linspace(0.0, 0.2, 8001)
@@ -35,31 +34,15 @@ TILTS = ("axial_place", "axial_speed", "lean", "lean_rate", "ball_axial")
 def history(**changes) -> History:
     """A cage at rest in the middle of its balls, with these changes."""
     none, flat, of_balls = (np.zeros((TIME.size, *shape)) for shape in ((), (2,), (BALLS,)))
-    numbers = [
-        "rotation",
-        "rotation_rate",
-        "kinetic_energy",
-        "stored_energy",
-        "land_force",
-        "axial_place",
-        "axial_speed",
-    ]
+    numbers = ["rotation", "rotation_rate", "kinetic_energy", "stored_energy", "land_force", *TILTS[:2]]
     balls = ["ball_lead", "ball_speed", "ball_axial", "contact_force", "contact_angle"]
-    values = {
-        **dict.fromkeys((one.name for one in fields(History)), 0.0),
-        **dict.fromkeys(numbers, none),
-        **dict.fromkeys(("position", "velocity", "lean", "lean_rate"), flat),
-        **dict.fromkeys(balls, of_balls),
-        **dict.fromkeys(("pocket_impacts", "pocket_rubbing"), np.zeros(BALLS)),
-        "time": TIME,
-        "work": dict.fromkeys(SOURCES, none),
-        "half_play": np.full(BALLS, 3e-4),
-        "pocket_angle": 2.0 * np.pi * np.arange(BALLS) / BALLS,
-        "judged_from": 0.1,
-        "followed": 0.2,
-        "outcome": RunOutcome.SETTLES,
-        "cause": Cause.NONE,
-    }
+    values = dict.fromkeys((one.name for one in fields(History)), 0.0)
+    values |= dict.fromkeys(numbers, none) | dict.fromkeys(balls, of_balls)
+    values |= dict.fromkeys(("position", "velocity", "lean", "lean_rate"), flat)
+    values |= dict.fromkeys(("pocket_impacts", "pocket_rubbing"), np.zeros(BALLS))
+    values |= {"time": TIME, "work": dict.fromkeys(SOURCES, none), "half_play": np.full(BALLS, 3e-4)}
+    values |= {"pocket_angle": 2.0 * np.pi * np.arange(BALLS) / BALLS, "judged_from": 0.1, "followed": 0.2}
+    values |= {"outcome": RunOutcome.SETTLES, "cause": Cause.NONE}
     return History(**values | changes)
 
 

@@ -3,17 +3,15 @@
 import json
 
 import pytest
-from commands import log
+from commands import extended, log, written
 from test_reference_tables import missing
 
-from separatrix.chain.impact_restitution import restitution_factor
+from separatrix import InputError, read_study, restitution_factor, wilson_interval
 from separatrix.ground.document import Part, part_of
-from separatrix.ground.errors import InputError
 from separatrix.ground.quantity import Estimate
 from separatrix.present.blocks import Level, Picture
 from separatrix.present.figure import Across, Trace
 from separatrix.present.text import text
-from separatrix.study.reading import read_study
 from separatrix.verbs import bearing, compare, computed, tribometer, verb_named
 from separatrix.verbs.answer_files import document, read_answer, read_answers, read_folder
 from separatrix.verbs.compare import RESULTS, difference_interval, differing, results
@@ -23,7 +21,6 @@ from separatrix.verbs.parts.bearing_drawing import CAGE, bearing_picture, sectio
 from separatrix.verbs.parts.verdict_blocks import deciding, linear_law, pocket_friction, verdict_sentences
 from separatrix.verbs.rank import by_paper
 from separatrix.verbs.sweep import SHOWN, case_table, envelope_figure, worst_words
-from separatrix.verdict.judgement import wilson_interval
 
 SHIPPED = "cryogenic-turbopump"
 
@@ -48,8 +45,7 @@ def changed(tmp_path, name, *edits, more=""):
     for old, new in edits:
         assert old in text
         text = text.replace(old, new)
-    (tmp_path / "changed.toml").write_text(text + more, encoding="utf-8")
-    return read_study(tmp_path / "changed.toml")
+    return read_study(written(tmp_path, text + more))
 
 
 SOFT = ('thickness = "1 um"', 'thickness = "50 um"\nelastic_modulus = "20 MPa"\npoisson_ratio = 0.3')
@@ -111,9 +107,8 @@ def test_check_says_what_a_moving_cage_will_be_refused_for(tmp_path, edits, more
 def test_notes_do_not_stand_below_uncertain_inputs_that_are_not_there(tmp_path):
     """A guess that is noted is no such input; one with a distribution has the heading."""
     for mass, there in (("25 g", False), ("25 g +- 10 %", True)):
-        path = tmp_path / "noted.toml"
-        path.write_text(f'extends = "le7"\n[cage]\nmass = "{mass}"\npocket_clearance = "0.6 mm"\n{LAND}')
-        shown = text(verb_named("check").page(answer("check", read_study(path))))
+        keys = f'[cage]\nmass = "{mass}"\npocket_clearance = "0.6 mm"\n{LAND}'
+        shown = text(verb_named("check").page(answer("check", extended(tmp_path, keys, "le7"))))
         assert "land_stiffness 10 MN/m" in shown
         assert ("Uncertain inputs" in shown) is there
 
@@ -265,9 +260,8 @@ def test_the_paper_differs_by_the_motion_too(motion):
 def test_a_map_says_what_is_next_to_the_study_and_where_it_changes():
     """The nearest point with its runs, and both ends of a change in its column."""
     words = nearest_words(mapped())
-    assert words.startswith(
-        "The point next to the study: film thickness 1 \N{MICRO SIGN}m, race friction 0.3: "
-    )
+    place = "film thickness 1 \N{MICRO SIGN}m, race friction 0.3"
+    assert words.startswith(f"The point next to the study: {place}: ")
     assert words.endswith("the cage begins to whirl between race friction 0.1 and 0.3.")
     assert nearest_words(mapped(changes=[])).endswith("6 runs.")
     assert [*unchanged(mapped(changes=[]))] == []
@@ -279,11 +273,8 @@ def test_every_point_of_a_map_has_its_values_to_point_at():
     """Values and reason stand at each cell, upward in y; what has no share is a gap, a refusal hatched."""
     cells, hatched = map_figure(mapped()).panels[0].marks[:2]
     assert cells.values == [[0.0, None], [1.0, None]]
-    assert cells.hover[1][
-        0
-    ] == "film thickness 1 \N{MICRO SIGN}m, race friction 0.3: UNSTABLE; share that " + (
-        "whirls 1 (0.7 to 1), 6 runs"
-    )
+    there = "film thickness 1 \N{MICRO SIGN}m, race friction 0.3: UNSTABLE; "
+    assert cells.hover[1][0] == f"{there}share that whirls 1 (0.7 to 1), 6 runs"
     assert cells.hover[0][1].endswith("too thin")
     assert hatched.where == [[False, True], [False, False]]
 
@@ -336,16 +327,13 @@ def test_an_envelope_has_a_curve_for_each_value_of_the_other_inputs():
 
 # Pages of `tribometer` and `compare`, and saved answers that are wrong.
 
-
 STUDY = read_study("cryogenic-turbopump")
 ANSWER = json.loads(json.dumps(document(bearing.VERB, computed(bearing.VERB, STUDY))))
 
 
 def saved(folder, name="bearing", **changes):
     """Write the answer of a bearing, changed, and return its path."""
-    path = folder / f"{name}.json"
-    path.write_text(json.dumps(ANSWER | changes))
-    return path
+    return written(folder, json.dumps(ANSWER | changes), f"{name}.json")
 
 
 # --- saved answers ------------------------------------------------------------------------------
@@ -459,7 +447,7 @@ def test_what_is_decided_by_comes_first():
 
     found = compared_answers(ranked("STABLE", 2.0, 3.0), ranked("UNSTABLE", 0.5, 0.1), names=("a", "b"))
     assert [(row["place"], row["name"]) for row in found["rows"]] == [
-        *(("A", "verdict"), ("F / A", "verdict"), ("A", "safety_factor"), ("F / A", "safety_factor")),
+        *(("A", "verdict"), ("F / A", "verdict"), ("A", "safety_factor"), ("F / A", "safety_factor"))
     ]
     assert "counting noise: verdict (2)." in text(compare.page(part_of(json.loads(json.dumps(found)))))
 

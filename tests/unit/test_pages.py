@@ -11,9 +11,9 @@ from matplotlib import image
 from test_reference_tables import missing
 
 import separatrix
+from separatrix import InputError, Interrupted, read_study
 from separatrix.front import api, main
 from separatrix.ground.document import part_of
-from separatrix.ground.errors import InputError
 from separatrix.ground.quantity import Estimate
 from separatrix.present import html, quantity_text
 from separatrix.present.blocks import Facts, Heading, Level, Note, Picture, Table, View, spans
@@ -22,11 +22,9 @@ from separatrix.present.figure import Axis, Figure, Panel, Trace
 from separatrix.present.pdf import pdf
 from separatrix.present.spreadsheet import spreadsheet
 from separatrix.present.text import text
-from separatrix.study.reading import read_study
 from separatrix.verbs import VERBS, verb_named
 from separatrix.verbs.answer_files import page_of_document, refusing_damage
 from separatrix.verdict.ledger import NAME
-from separatrix.verdict.long_jobs import Interrupted
 
 SMALL = """
 extends = "momentum-wheel"
@@ -387,13 +385,9 @@ def test_a_click_in_a_figure_is_at_the_values_of_its_axes():
     assert up.low + (up.high - up.low) * share == pytest.approx(0.25, rel=1e-3)
 
 
-def test_a_notebook_shows_the_page(answers):
-    """An answer is its page in a notebook."""
-    assert "<h1>" in answers("bearing")._repr_html_()
-
-
 def test_uncertain_inputs_are_said_to_be_at_their_means(answers):
-    """By verbs that do not draw them."""
+    """By verbs that do not draw them; in a notebook an answer is its page."""
+    assert "<h1>" in answers("bearing")._repr_html_()
     assert "at their means: bearing.contact_angle" in answers("bearing").summary()
     assert "at their means" not in answers("sensitivity").summary()
 

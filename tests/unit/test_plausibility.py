@@ -7,18 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from separatrix.chain.solution import solve
+from separatrix import KinematicModel, Kinematics, Operation, PocketShape, Study, read_study, solve
 from separatrix.study.cautions import beyond_bearings
-from separatrix.study.reading import read_study
-from separatrix.study.study import KinematicModel, Kinematics, Operation, PocketShape, Study
 from separatrix.verbs import restitution
 from separatrix.verbs.verb import NoOptions
-from separatrix.verdict.beyond_models import (
-    Moved,
-    bending_frequency,
-    beyond_motion,
-    pocket_pressure,
-)
+from separatrix.verdict.beyond_models import Moved, bending_frequency, beyond_motion, pocket_pressure
 
 SHIPPED = read_study("cryogenic-turbopump", "paper")
 CAGE = SHIPPED.cage
@@ -105,7 +98,6 @@ def test_an_overdamped_impact_is_called_so():
 SOFT = replace(SHIPPED.ranking.candidates[0].material, compressive_strength=100e6)
 FIRM = replace(SOFT, compressive_strength=None)
 ROW = Moved("A", largest_contact_force=50.0, largest_offset=501e-6)
-
 
 STATE = solve(SHIPPED)
 

@@ -7,18 +7,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from separatrix.cage import moving_cage
+from separatrix import Candidate, Friction, Material, RankingQuestion, StabilitySettings, moving_cage, solve
 from separatrix.chain.pocket_friction import with_scatter
-from separatrix.chain.solution import solve
 from separatrix.study.reading import read_study
-from separatrix.study.study import (
-    CageModel,
-    Candidate,
-    Friction,
-    Material,
-    RankingQuestion,
-    StabilitySettings,
-)
+from separatrix.study.study import CageModel
 from separatrix.verdict.beyond_models import Pocket
 from separatrix.verdict.judgement import Judgement, Verdict, judge, transmitted_force
 from separatrix.verdict.ledger import NAME, Ledger
@@ -141,20 +133,17 @@ def test_who_may_have_the_lower_friction_is_told_at_five_per_cent():
     assert not may_be_lower(MeanFriction(at * 1.0001, at * 0.01), leader)
 
 
-def test_a_mean_over_environments_is_of_the_measured_ones():
-    """A blank of the table is absent, never 0; its error is half the root of the sum of squares of two."""
-    assert overall([None, Friction(mean=0.2), Friction(mean=0.4)]).mean == pytest.approx(0.3)
-    assert overall([None, None]) is None
-    both = [Friction(mean=0.2, standard_deviation=0.03, count=9), Friction(mean=0.4, standard_error=0.04)]
-    assert overall(both).error == pytest.approx(math.hypot(0.01, 0.04) / 2, rel=1e-12)  # rounding
-
-
-def test_scatter_of_the_friction_becomes_a_standard_error():
-    """Standard deviation over the root of the count; without a count the deviation itself."""
+def test_scatter_of_the_friction_becomes_a_standard_error_of_its_mean():
+    """Deviation over the root of a count; of two environments half the root of the sum of squares."""
     assert measured(Friction(mean=0.12, standard_deviation=0.02)).error == pytest.approx(0.02)
     found = measured(Friction(mean=0.12, standard_deviation=0.02, count=4))
     assert found.error == pytest.approx(0.01)
     assert found.interval() == pytest.approx((0.12 - 0.0196, 0.12 + 0.0196))
+    # a blank of the table is absent, never 0
+    assert overall([None, Friction(mean=0.2), Friction(mean=0.4)]).mean == pytest.approx(0.3)
+    assert overall([None, None]) is None
+    both = [Friction(mean=0.2, standard_deviation=0.03, count=9), Friction(mean=0.4, standard_error=0.04)]
+    assert overall(both).error == pytest.approx(math.hypot(0.01, 0.04) / 2, rel=1e-12)  # rounding
 
 
 def test_outside_the_tests_a_mean_is_known_less_well():

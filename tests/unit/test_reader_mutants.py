@@ -16,9 +16,8 @@ import pytest
 from commands import read_friction
 from rich_studies import SPACE
 
-from separatrix.ground.errors import InputError
+from separatrix import InputError, read_study
 from separatrix.study.library import read_library
-from separatrix.study.reading import read_study
 
 FROZEN = Path(__file__).with_name("reader_mutants.json")
 READERS = {"library": read_library, "friction": read_friction, "study": read_study}

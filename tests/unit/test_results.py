@@ -9,14 +9,11 @@ import numpy as np
 import pytest
 from cages import TURNING
 
-from separatrix.chain.solution import solve
+from separatrix import Guidance, document, read_study, solve
 from separatrix.ground.plain_data import Group, NotFiniteError, field_units, node_of, plain, shape, units_of
 from separatrix.ground.units import Newton, Ratio, Rows
 from separatrix.present.dataset import arrays_of, dataset, main_table
-from separatrix.study.reading import read_study
-from separatrix.study.study import Guidance
 from separatrix.verbs import Computed, cage_answers, chain_answers, verb_named
-from separatrix.verbs.answer_files import document
 from separatrix.verbs.verb import NoOptions
 from separatrix.verdict import swept_cases as sweep
 from separatrix.verdict.ranking_records import NotMeasured, Ranked

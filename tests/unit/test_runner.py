@@ -10,26 +10,27 @@ import sys
 import threading
 import time
 import zlib
+from collections import defaultdict
 from dataclasses import fields, replace
 from pathlib import Path
 
 import distributed
 import numpy as np
 import pytest
-from commands import COMMAND, pieces
+from commands import COMMAND, pieces, refusal_line
+from hypothesis import given
+from hypothesis import strategies as st
 
+from separatrix import InputError, MotionModel, PocketShape, read_study, solve, stability_curve
 from separatrix.cage import Ensemble, moving_cage, run_ensemble, settings_for
 from separatrix.cage.ensemble import Runs, follow_alike
-from separatrix.chain.solution import solve
-from separatrix.front import main
-from separatrix.ground.errors import InputError
-from separatrix.study.reading import read_study
-from separatrix.study.study import MotionModel, PocketShape
+from separatrix.front import console, main
+from separatrix.front.console import Pace
+from separatrix.ground.compiling import COMPILING
 from separatrix.verdict import cluster as clusters
 from separatrix.verdict.cluster import cluster
 from separatrix.verdict.ledger import NAME, Ledger, key_of
 from separatrix.verdict.long_jobs import PART, Interrupted, Load, Runner, Work, joined, scattered
-from separatrix.verdict.stability_curve import stability_curve
 
 WHEEL = read_study("momentum-wheel")
 CAGE = moving_cage(solve(WHEEL), 0.2)
@@ -295,11 +296,7 @@ runs = 16
 
 @pytest.mark.usefixtures("undrawn")
 def test_a_killed_job_goes_on_to_the_same_bytes(elsewhere, tmp_path, capsys):
-    """SIGKILL with some of the runs kept: no other file is left, and the next call takes those runs.
-
-    The ledger is the same for every verb; those of rank and map that are interrupted go on in test_ranking
-    and test_stability_map.
-    """
+    """SIGKILL with some of the runs kept: no other file is left, and the next call takes those runs."""
     Path("s.toml").write_text(STUDY)
     given = "sweep s.toml --vary ball_cage_friction=0.1..0.4:6 --verdicts --json --jobs 1"
     call = given.split()
@@ -309,6 +306,8 @@ def test_a_killed_job_goes_on_to_the_same_bytes(elsewhere, tmp_path, capsys):
         time.sleep(0.02)
     process.kill()
     process.communicate()
+    # The ledger is the same for every verb; those of rank and map that are interrupted go on in test_ranking
+    # and test_stability_map.
     assert {path.name.removesuffix("-wal").removesuffix("-shm") for path in Path("k").iterdir()} == {NAME}
     assert main([*call, "--out", "k"]) == 0
     resumed, said = capsys.readouterr()
@@ -318,7 +317,6 @@ def test_a_killed_job_goes_on_to_the_same_bytes(elsewhere, tmp_path, capsys):
 
 
 # Runs on a Dask cluster: the same numbers as here; and what is refused.
-
 
 FEW = replace(WHEEL.stability, runs=4, duration=0.005, restitution_factors=(0.2, 0.8))
 
@@ -343,11 +341,8 @@ def test_a_cluster_gives_the_same_curve(two):
 
 def refused(address):
     """Return the line with which an address is refused: with the option, and the address."""
-    with pytest.raises(InputError) as refusal, cluster(address):
-        pass
-    text = str(refusal.value)
+    text = refusal_line(address, lambda one: cluster(one).__enter__())
     assert text.startswith("--cluster ")
-    assert "\n" not in text
     return text
 
 
@@ -383,3 +378,103 @@ def test_without_the_extra_the_refusal_names_it(monkeypatch):
     text = refused("local:1")
     assert "needs the extra cluster" in text
     assert "separatrix[cluster]" in text
+
+
+# How far a long job is: the told share never falls, and the time left is about right from a tenth on.
+# The files in `recorded_work` are events of `rank dry-reaction-wheel` and `map cryogenic-turbopump` in one
+# thread: what the job announced to `Work` (load, spend, keep, end, finish) of a place, by kind and number, and
+# when it reported, by the processor time of the process, which no neighbour on the machine changes:
+# ``report`` [s] with the time spent on runs under way [s], or for a map, which counts its points, ``pace``
+# [s] with done and total.
+
+RECORDED = sorted((Path(__file__).parent / "recorded_work").glob("*.json"))
+SOME_WORK = st.floats(0.0, 1e3)
+
+
+@given(st.lists(st.tuples(SOME_WORK, SOME_WORK), min_size=1))
+def test_the_share_never_falls_however_much_work_is_found(steps):
+    """Any amounts done, any rest expected after each: the share rises within 0 and 1, and ends at 1."""
+    pace, done, before = Pace(), 0.0, 0.0
+    for made, rest in [*steps, (1.0, 0.0)]:
+        done += made
+        pace(done, done + rest)
+        assert before <= pace.share <= 1.0
+        before = pace.share
+    assert pace.share == 1.0
+
+
+@given(st.lists(SOME_WORK, min_size=1))
+def test_the_share_is_done_by_total_while_the_total_stays(parts):
+    """Whatever the steps; 1e-9 is the rounding of a hundred products."""
+    pace, done, total = Pace(), 0.0, sum(parts) + 1.0
+    for part in parts:
+        done += part
+        pace(done, total)
+        assert pace.share == pytest.approx(done / total, abs=1e-9)
+
+
+@pytest.mark.parametrize("path", RECORDED, ids=lambda path: path.stem)
+def test_a_real_job_tells_its_end_within_a_factor_of_two(path, monkeypatch):
+    """After a tenth of its time, until the middle; the share never falls."""
+    now = [0.0]
+    monkeypatch.setattr(COMPILING, "clock", lambda: now[0])
+    monkeypatch.setattr(console, "ENOUGH", 1.0)  # these jobs are short
+    kinds = defaultdict[str, type](lambda: type("Kind", (str,), {}))
+    events = json.loads(path.read_text())
+    begun, end = (
+        next(one[1] for one in way if one[0] in ("report", "pace")) for way in (events, events[::-1])
+    )
+    work, pace, shares, told = Work(), Pace(), [0.0], []
+    for kind, *given_to in events:
+        place = given_to[0]
+        if isinstance(place, str):
+            place = kinds[place.split()[0]](place)
+        if kind == "load":
+            work.loads[place] = Load(*given_to[1:])
+        elif kind in ("report", "pace"):
+            now[0] = place
+            pace(*(given_to[1:] if kind == "pace" else work.so_far(1, *given_to[1:])))
+            shares.append(pace.share)
+            if 0.1 < (now[0] - begun) / (end - begun) < 0.5 and pace.left is not None:
+                told.append(pace.left / (end - now[0]))
+        else:
+            getattr(work, kind)(place, *given_to[1:])
+    assert shares == sorted(shares)
+    assert shares[-1] == 1.0
+    assert len(told) > 10
+    assert all(0.5 < one < 2.0 for one in told), (min(told), max(told), told[:5])
+
+
+def test_what_is_left_of_a_kind_goes_on_at_its_own_pace():
+    """Runs of one kind take ten times as long; its pace and that of all count alike, by one load each."""
+    work = Work()
+    work.loads.update(dict.fromkeys(("slow", "slow too", 1, 2), Load(10.0)))
+    for place, spent in (("slow", 10.0), (1, 1.0)):
+        work.spend(place, spent, 10.0)
+        work.finish(place)
+    done, total = work.so_far(1)
+    slow, fast = (10.0 + 5.5) / 20.0, (1.0 + 5.5) / 20.0
+    assert (done, total - done) == (11.0, pytest.approx(10.0 * slow + 10.0 * fast))  # rounding
+
+
+def test_a_kind_of_which_nothing_was_made_leaves_the_end_open():
+    """A number and a word are two kinds."""
+    work = Work()
+    work.loads.update(dict.fromkeys((1, 2, "slow"), Load(10.0)))
+    work.spend(1, 1.0, 10.0)
+    assert work.so_far(1)[1] == math.inf
+    work.spend("slow", 5.0, 5.0)
+    assert work.so_far(1)[1] < math.inf
+
+
+def test_work_for_runs_that_have_not_ended_counts():
+    """Of 10 s left 10 s under way may be all or little: half of it is left; the end is never passed."""
+    work = Work()
+    work.loads.update(dict.fromkeys((1, 2), Load(10.0)))
+    work.spend(1, 10.0, 10.0)
+    work.finish(1)
+    assert work.so_far(1) == (10.0, 20.0)
+    assert work.so_far(1, 10.0) == (20.0, 25.0)
+    work.spend(2, 10.0, 10.0)
+    work.finish(2)
+    assert work.so_far(1, 1.0) == (21.0, 21.0)

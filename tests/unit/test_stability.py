@@ -7,31 +7,18 @@ from itertools import accumulate
 import numpy as np
 import pytest
 
+from separatrix import Runner, critical_friction, read_study, restitution_threshold, solve
 from separatrix.cage import Cause, RunOutcome, moving_cage, run_ensemble
 from separatrix.chain.impact_restitution import damping_ratio, restitution_factor
-from separatrix.chain.solution import solve
-from separatrix.study.reading import read_study
 from separatrix.study.study import BallModel, StabilitySettings
 from separatrix.verdict import long_jobs as runner
 from separatrix.verdict import stability_curve
-from separatrix.verdict.crossing import (
-    LADDER,
-    Count,
-    Crossing,
-    Response,
-    Side,
-    cage_at,
-    cell_of,
-    responses,
-)
-from separatrix.verdict.long_jobs import Runner
+from separatrix.verdict.crossing import LADDER, Count, Crossing, Response, Side, cage_at, cell_of, responses
 from separatrix.verdict.stability_curve import (
     FACTORS,
     CriticalFriction,
-    critical_friction,
     own_restitution_factor,
     own_threshold,
-    restitution_threshold,
 )
 
 SHIPPED = solve(read_study("cryogenic-turbopump"))
@@ -213,16 +200,14 @@ def test_runs_are_numbered_one_after_the_other_and_few_are_wasted_far_from_the_c
 
 
 def test_unresolved_runs_are_told(monkeypatch):
-    """They count as not whirling, and a note says how many, but for those whose motion falls.
-
-    A ball at the edge of its wall counts as a whirl: where all balls leave their pockets no motion settles.
-    """
+    """They count as not whirling, and a note says how many, but for those whose motion falls."""
     cage = CAGE
     found = run_ensemble(cage, StabilitySettings(duration=1e-3), kicks=(0.5,), runs=5)
     found.outcome[0] = (RunOutcome.WHIRLS, *[RunOutcome.UNRESOLVED] * 4)
     found.cause[0] = (Cause.NONE, Cause.NOT_FINITE, Cause.NO_CONTACT, Cause.FALLING, Cause.LEFT_POCKET)
     monkeypatch.setattr(runner.Runner, "ensemble", lambda *_, **__: found)
     count = responses(cage, StabilitySettings(), (0.5,), Runner())[0.5].add(cell_of(0.1), 5)
+    # A ball at the edge of its wall counts as a whirl: where all balls leave their pockets no motion settles.
     assert (count.whirling, count.runs) == (2, 5)
     (note,) = count.notes
     assert re.search(r"2 of 5 runs from 0.5 m/s at friction 0.1 .* not whirling", note)

@@ -1,4 +1,4 @@
-"""Records of a study check themselves; files are read key by key, with defaults, variants and origins."""
+"""Records of a study check themselves; files are read key by key: defaults, variants, origins, refusals."""
 
 import json
 import math
@@ -8,27 +8,60 @@ from pathlib import Path
 
 import pytest
 from cages import BEARING
-from commands import written
-from test_study_refusals import VALID
+from commands import changed, refusal, rows_of, written
 
-from separatrix.ground.errors import InputError
+from separatrix import InputError, read_study, resolved, template
+from separatrix.ground.toml import parsed
 from separatrix.ground.units import UNITS
 from separatrix.study.keys import with_values
-from separatrix.study.reading import read_study
-from separatrix.study.sources import resolved
-from separatrix.study.study import (
-    ORDER,
-    Film,
-    KinematicModel,
-    Operation,
-    Study,
-    Wear,
-    Worn,
-    shipped_studies,
-)
-from separatrix.study.template import template
+from separatrix.study.study import ORDER, Film, KinematicModel, Operation, Study, Wear, Worn, shipped_studies
 from separatrix.verdict.parameter_axes import value_in, varied
 
+VALID = """\
+title = "A valid study"
+
+[bearing]
+ball_diameter = "11.1125 mm"
+pitch_diameter = "65 mm"
+ball_count = 13
+contact_angle = "25 deg"
+inner_conformity = 0.52
+outer_conformity = 0.52
+bore = "50 mm"
+ball_material = "440C"
+ring_material = { elastic_modulus = "205 GPa", poisson_ratio = 0.285, density = "7650 kg/m3" }
+
+[operation]
+inner_speed = "15000 rpm"
+axial_load = "300 daN"
+
+[kinematics]
+model = "free"
+
+[film]
+race_friction = 0.1
+material = "PTFE transfer film"
+thickness = "0.5 um"
+
+[cage]
+mass = "25 g"
+ball_cage_stiffness = "3e6 N/m"
+pocket_clearance = "0.6 mm"
+guidance = "outer"
+land_clearance = "1 mm"
+land_friction = 0.1
+land_stiffness = "1e7 N/m"
+land_restitution = 0.5
+
+[stability]
+kicks = ["0.1 m/s", "0.5 m/s", "2 m/s"]
+runs = 64
+restitution_factors = [0.05, 0.5, 0.95]
+
+[ranking]
+friction = "pin-on-disk-77K"
+materials = ["Armalon", "Vespel SP 211"]
+"""
 BASE = VALID.partition("[stability]")[0].replace('[kinematics]\nmodel = "free"\n\n', "")
 
 
@@ -82,14 +115,8 @@ def test_a_file_comes_before_a_shipped_study_of_its_name_and_a_folder_does_not(e
     written(tmp_path, BASE, "ball-218")
     (tmp_path / "le7").mkdir()
     assert (read_study("le7").name, read_study("ball-218").title) == ("le7", "A valid study")
-    others = {
-        "cryogenic-turbopump",
-        "dry-reaction-wheel",
-        "lox-turbopump",
-        "lox-turbopump-radial",
-        "momentum-wheel",
-    }
-    assert set(shipped_studies()) == {"ball-218", "le7", *others}
+    others = "cryogenic-turbopump dry-reaction-wheel lox-turbopump lox-turbopump-radial momentum-wheel"
+    assert set(shipped_studies()) == {"ball-218", "le7", *others.split()}
 
 
 IN_SPACE = (
@@ -100,11 +127,7 @@ IN_SPACE = (
 
 def test_every_line_that_is_off_in_the_template_can_be_switched_on(read):
     """The commented alternatives are right too: each key is taken, alone, in place of what it excludes."""
-    excluded = {
-        "radial_clearance": "contact_angle",
-        "tilt": "moment",
-        "elastic_modulus": "material",
-    }
+    excluded = {"radial_clearance": "contact_angle", "tilt": "moment", "elastic_modulus": "material"}
     beside = {
         "elastic_modulus": "poisson_ratio = 0.38",
         "ramp_start": 'ramp_time = "50 ms"',
@@ -146,11 +169,7 @@ OPENED = pytest.approx(math.acos(1 - 20e-6 / (2 * 0.04 * 0.0111125)), rel=1e-12)
 READ = [
     ('title = "A valid study"\n', "", lambda s: s.title == "case"),
     (ANGLE, 'radial_clearance = "0 um"', lambda s: s.bearing.free_angle == 0.0),
-    (
-        ANGLE,
-        'radial_clearance = "20 um"',
-        lambda s: s.bearing.free_angle == OPENED,
-    ),
+    (ANGLE, 'radial_clearance = "20 um"', lambda s: s.bearing.free_angle == OPENED),
     (FILM, 'elastic_modulus = "2 GPa"\npoisson_ratio = 0.4\n', lambda s: s.film.body.poisson_ratio == 0.4),
     (FILM + 'thickness = "0.5 um"\n', "", lambda s: s.film == Film(race_friction=0.1)),
     (
@@ -223,10 +242,8 @@ def test_resolved_inputs_are_plain_and_say_where_each_number_comes_from():
         "origin": 'cryogenic-turbopump.toml, line 7: "11.1125 mm"',
     }
     assert inputs["operation"]["outer_speed"] == {"value": 0.0, "unit": "rad/s", "origin": "default"}
-    assert (
-        inputs["cage"]["moment_of_inertia"]["origin"]
-        == "default: of the ring's shape, or a thin ring at the pitch diameter"
-    )
+    inertia = "default: of the ring's shape, or a thin ring at the pitch diameter"
+    assert inputs["cage"]["moment_of_inertia"]["origin"] == inertia
     assert inputs["stability"]["runs"]["origin"] == "default"
     assert inputs["film"]["material"]["confidence"] == "modulus: guess, Poisson's ratio: guess"
     armalon = next(c for c in inputs["ranking"]["candidates"] if c["name"] == "Armalon")
@@ -295,3 +312,150 @@ def test_the_page_on_study_files_is_complete_and_its_examples_are_right(read):
     assert read(variant).operation.axial_load == 1500.0
     assert read(f'extends = "ball-218"\n{catalogue}').bearing.ball_diameter == 0.003969
     assert read(BASE + candidate).ranking.candidates[0].name == "My compound"
+
+
+# Every wrong study file is refused with one line: place, rule, value, cure.
+
+IN_PLACE = """\
+[[ranking.candidates]]
+name = "Mine"
+friction = { "liquid nitrogen, 440C" = 0.11 }
+"""
+TABLE = 'friction = "pin-on-disk-77K"\nmaterials = ["Armalon", "Vespel SP 211"]\n'
+
+EDITS = r"""
+model = "free" => model = "jones" :: "outer race control" ; got "jones"
+title = "A valid study" => runs = 3 :: line 1 ; runs ; is not a key of a study. It belongs in [stability]
+[operation] => [[operation]] :: line 14: [[operation]] ; one section, headed [operation]
+inner_conformity = 0.52 => inner_conformity = 0,52 :: line 8 ; not valid TOML ; Write a decimal point: 0.52.
+pitch_diameter = "65 mm" => pitch_diameter = 65 mm :: line 5 ; Put quantities in quotes: "65 mm".
+model = "free" => model = free :: line 19 ; Put text in quotes.
+ball_count = 13 => ball_count = 19 :: line 6 ; [bearing] ball_count must be at most 18 ; got 19
+"65 mm" => "10 mm" :: ball_count ; too large for the pitch circle
+race_friction = 0.1 => race_friction = 3e-5 :: [film] race_friction must be >= 0.0001 ; race control
+"50 mm" => "60 mm" :: [bearing] bore must be smaller ; 53.89 mm
+ball_material = "440C" => ball_material = "404C"
+    :: line 11 ; [bearing] ball_material ; Did you mean 440C? ; 52100
+"300 daN" => "0 N" :: [operation] axial_load ; nothing presses the balls
+axial_load = "300 daN" => axial_load = "300 daN"\nmoment = "1 N m"\ntilt = "1 mrad"
+    :: [operation] tilt and moment exclude each other
+axial_load = "300 daN"\n =>  :: [operation] axial_load is missing ; or preload and arrangement.
+axial_load = "300 daN" => preload = "300 daN" :: [operation] arrangement is missing ; preload, arrangement
+axial_load = "300 daN" => axial_load = "300 daN"\npreload_kind = "spring"
+    :: [operation] preload_kind has a meaning only for a pair
+"300 daN" => "300 daN"\npreload = "9 N"\narrangement = "single"\npreload_kind = "rigid"
+    :: [operation] preload_kind has a meaning only for a pair ; back-to-back
+"300 daN" => "300 daN"\npreload = "9 N"\narrangement = "face-to-face"\nradial_load = "1 N"
+    :: [operation] radial_load must be 0 for a pair ; got "1 N" ; loads of one of the two
+"300 daN" => "300 daN"\npreload = "9 N"\narrangement = "tandem" :: [operation] arrangement ; "back-to-back"
+material = "PTFE transfer film"\n =>  :: [film] material is missing
+"0.6 mm" => "5 mm"
+    :: [cage] pocket_clearance must be smaller than the gap between balls, 4.443 mm ; got "5 mm"
+guidance = "outer"\n =>  :: [cage] land_clearance needs guidance ; guidance =
+"Vespel SP 211" => "Armalon" :: [ranking] candidates ; "Armalon" twice
+TABLE =>  :: [ranking] lacks: friction (or candidates)
+bore = => "" = 1\nbore = :: [bearing] "" is not a valid key
+"A valid study" => "A\u001b[31m study" :: line 1: title ; printable
+title = "A valid study" => extends = "study.toml" :: line 1: extends ; leads back
+title = "A valid study" => extends = "le77" :: line 1: extends ; Did you mean le7?
+title = "A valid study" => extends = 7 :: line 1: extends ; path
+bore = => x = LINES\nbore = :: line 26 ; nests brackets
+bore = => x = INLINE\nbore = :: line 10 ; nests brackets
+bore = => DOTTED = 1\nbore = :: line 10 ; [bearing] a
+ball_count = 13 => ball_count = NINES :: study.toml
+race_friction = 0.1 => race_friction = 0xNINES :: 60 digits
+ball_count = 13 => ball_count = 0xNINES :: 60 digits
+[cage] => [film.wear]\nshare = 2\nfriction = 0.3\n[cage] :: [film] wear.share must lie between 0 and 1; got 2
+[cage] => BAND\nshare = 0.1\n[cage] :: [film] wear.share and width exclude each other
+[cage] => BAND\n[traction]\npressure = "coated"\n[cage]
+    :: [traction] pressure must be "hertz" where the film is
+"""
+"""An edit of VALID, and the words that its refusal must have."""
+LONG = {
+    "BAND": '[film.wear]\nwidth = "0.2 mm"\nfriction = 0.3',
+    "IN_PLACE": IN_PLACE,
+    "TABLE": TABLE,
+    "LINES": "[\n" * 9000 + "]" * 3000,
+    "INLINE": "{a=" * 900 + "1" + "}" * 900,
+    "DOTTED": ".".join("a" * 1500),
+    "NINES": "9" * 3900,
+}
+
+
+@pytest.mark.parametrize(("edit", "words"), rows_of(EDITS))
+def test_a_wrong_file_is_refused_with_place_rule_and_cure(edit, words, tmp_path):
+    """One change to a valid study; the one line names the file, the place, and what to do."""
+    for name, text in LONG.items():
+        edit = edit.replace(name, text)
+    message = refusal(written(tmp_path, changed(VALID, edit)))
+    assert [word for word in ["study.toml", *words[0].split(" ; ")] if word not in message] == [], message
+
+
+def test_a_folder_a_device_and_a_missing_file_are_refused_at_once(tmp_path):
+    """Nothing but a regular file is opened, whatever its path: empty, with a NUL, too long."""
+    assert "is a folder" in refusal(tmp_path)
+    assert refusal("/dev/null").startswith("/dev/null is not a regular file. Save its output")
+    assert "does not exist. Shipped examples: ball-218" in refusal(tmp_path / "none.toml")
+    assert "Did you mean cryogenic-turbopump?" in refusal("cryogenic_turbopump")
+    for path in ("", "a\0b", "x" * 5000, "no/such/folder/x.toml", "two\nlines.toml", "\x1b[31m.toml"):
+        refusal(path)
+
+
+def test_a_stiffness_needs_a_value_or_a_modulus(tmp_path):
+    """Of the cage, or of every candidate."""
+    text = VALID.replace("[ranking]\n" + TABLE, IN_PLACE).replace('ball_cage_stiffness = "3e6 N/m"\n', "")
+    path = written(tmp_path, text)
+    rule = r'study\.toml, line 26: \[cage\] ball_cage_stiffness is missing, and the candidate "Mine" has no'
+    with pytest.raises(InputError, match=rf"^{rule}.* Give the stiffness or the material\.$"):
+        read_study(path)
+    path.write_text(text.replace("[cage]", '[cage]\nmaterial = "Armalon"'))
+    assert read_study(path).cage.ball_cage_stiffness is None
+
+
+CHAIN = {f"{i}.toml": f'extends = "{i + 1}.toml"\n' for i in range(40)} | {"40.toml": VALID}
+EXTENDING = {
+    "a circle": ({"b.toml": 'extends = "0.toml"\n'}, "b.toml", "0.toml, line 1: extends leads back"),
+    "a long chain": (CHAIN, "0.toml", "chain of more than"),
+    "a mistake in the base": (
+        {"0.toml": VALID.replace('"300 daN"', "3000")}, "0.toml", "0.toml, line 16: [operation] axial_load",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("files", "base", "words"), EXTENDING.values(), ids=EXTENDING)
+def test_a_mistake_across_files_is_refused_where_it_stands(files, base, words, tmp_path):
+    """Files that extend each other, more of them than anyone can follow, a wrong base of a right variant."""
+    for name, text in ({"0.toml": 'extends = "b.toml"\n'} | files).items():
+        written(tmp_path, text, name)
+    assert words in refusal(written(tmp_path, f'extends = "{base}"\n'))
+
+
+SCANNED = '''title = """
+[cage]
+mass = 1
+"""
+samples = [
+  ["a"],
+  [ "b" ], # ]
+]
+after = 1 # [operation] \u2028
+[film]  # "a comment
+thickness = { a = 1 }
+note = \'\'\'
+race_friction = 2
+\'\'\'
+[[ranking.candidates]]
+name = "x"
+[[ranking.candidates]]
+material.density = 4
+'''
+
+
+def test_the_line_of_a_key_is_not_looked_for_in_texts_and_lists():
+    """What looks like a header or a key inside a text, a list or a comment is none; U+2028 ends no line."""
+    _, lines = parsed(SCANNED, "study.toml")
+    assert ", ".join(f"{'.'.join(map(str, path))} {line}" for path, line in lines.items()) == (
+        "title 1, samples 5, after 9, film 10, film.thickness 11, film.note 12, ranking 15, "
+        "ranking.candidates 15, ranking.candidates.0 15, ranking.candidates.0.name 16, "
+        "ranking.candidates.1 17, ranking.candidates.1.material 18, ranking.candidates.1.material.density 18"
+    )

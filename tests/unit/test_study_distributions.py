@@ -7,22 +7,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from commands import refusal_line, refused, rows_of, written
+from commands import refusal_line, rows_of, written
 from scipy import stats
 from scipy.stats import lognorm
 
-from separatrix.ground.errors import InputError
-from separatrix.study.distribution import (
-    CUT,
-    log_normal,
-    log_uniform,
-    normal,
-    samples,
-    uniform,
-)
+from separatrix import InputError, read_study, resolved
+from separatrix.study.distribution import CUT, log_normal, log_uniform, normal, samples, uniform
 from separatrix.study.keys import study_numbers, value_of, with_values
-from separatrix.study.reading import read_study
-from separatrix.study.sources import resolved
 from separatrix.verdict.draws import sample, uncertain_inputs
 from separatrix.verdict.ranking_records import measured
 
@@ -52,12 +43,10 @@ FORMS = {
 
 @pytest.mark.parametrize("text", FORMS)
 def test_every_form_is_read(text, study_of):
-    """The kind and its numbers, to rounding of the unit; and the text as it stands in the file.
-
-    What follows the sign is two standard deviations, as on a certificate (GUM, 7.2.4).
-    """
+    """The kind and its numbers, to rounding of the unit; and the text as it stands in the file."""
     study = study_of(f"[film]\nthickness = {text}\n")
     found, wanted = study.distributions["film.thickness"], FORMS[text]
+    # What follows the sign is two standard deviations, as on a certificate (GUM, 7.2.4).
     assert found.kind == wanted.kind
     assert (found.mean, found.standard_deviation) == pytest.approx(
         (wanted.mean, wanted.standard_deviation), rel=1e-14
@@ -309,20 +298,7 @@ def test_numbers_that_overflow_are_refused_in_one_line(kind, tmp_path):
     assert re.match(r"study.toml, line \d+: .* must be", line)
 
 
-@pytest.mark.parametrize(
-    ("samples", "words"),
-    [
-        *((text, "must be a power of two from 64") for text in ("0", "-64", "32")),
-        *(("1000", "Try 1024."), ("131072", "to 65536"), ("9" * 30, "to 65536")),
-    ],
-)
-def test_a_wrong_number_of_bearings_is_refused(samples, words, capsys):
-    """Of the verb that draws them."""
-    assert words in refused(capsys, "sensitivity", "cryogenic-turbopump", "--samples", samples)
-
-
 # Distributions of one number: moments and quantiles by a second road, refusals, words.
-
 
 POINTS = (np.arange(2**16) + 0.5) / 2**16
 """Midpoints: the mean of a function of them is its integral, to 1e-9 for what is smooth inside."""
@@ -342,13 +318,11 @@ CASES = {
 
 @pytest.mark.parametrize("name", CASES)
 def test_quantiles_and_moments_are_those_of_scipy_and_of_their_integrals(name):
-    """To rounding; the log-normal of scipy has no end, which moves 2.9e-7 of probability.
-
-    The cut at 5 standard deviations takes 8e-6 of a normal one's and 3e-5 of this log-normal one's. The
-    outermost points that a sampling can give stay between the stated ends.
-    """
+    """To rounding; the log-normal of scipy has no end, which moves 2.9e-7 of probability."""
     ours, theirs = CASES[name]
     u = np.linspace(0.01, 0.99, 99)
+    # The cut at 5 standard deviations takes 8e-6 of a normal one's and 3e-5 of this log-normal one's. The
+    # outermost points that a sampling can give stay between the stated ends.
     assert ours.quantile(u) == pytest.approx(theirs.ppf(u), rel=1e-5 if name == "log-normal" else 1e-12)
     assert float(np.mean(ours.quantile(POINTS))) == pytest.approx(ours.mean, rel=1e-5)
     assert ours.mean == pytest.approx(theirs.mean(), rel=1e-12)

@@ -7,14 +7,10 @@ import openpyxl
 import pytest
 from commands import document, refused
 
-from separatrix.cage import moving_cage
-from separatrix.chain.solution import solve
+from separatrix import InputError, Runner, moving_cage, read_study, solve
 from separatrix.front import main
-from separatrix.ground.errors import InputError
-from separatrix.study.reading import read_study
 from separatrix.study.study import CageModel
 from separatrix.verdict.judgement import judge, transmitted_force
-from separatrix.verdict.long_jobs import Runner
 from separatrix.verdict.swept_cases import MOST_CASES, sweep
 
 STUDY = read_study("momentum-wheel")
@@ -160,19 +156,3 @@ def test_every_mistake_of_a_table_has_its_line(text, places, capsys):
     lines = capsys.readouterr().err.splitlines()
     starts = [f"separatrix: c.csv {place}" for place in places]
     assert all(line.startswith(start) for line, start in zip(lines, starts, strict=True))
-
-
-@pytest.mark.parametrize(
-    ("options", "rule"),
-    [
-        ((), "--vary is missing"),
-        (("--vary", "cage.mass=1..2g", "--cases", "c.csv"), "exclude each other"),
-        (("--vary", "cage.mass=1..2g", "--vary", "cage.mass=1..2g"), "must name each parameter once"),
-        (("--vary", "kick=1..2m/s"), "not a numeric input that a sweep can vary"),
-        (("--vary", "cage.mass=1..2g:1000", "--vary", "film.thickness=1..2um:1000"), "at most 100000 cases"),
-        (("--cases", "nope.csv"), "cannot be read"),
-    ],
-)
-def test_wrong_options_are_refused_in_one_line(options, rule, capsys):
-    """Status 2, nothing written."""
-    assert rule in refused(capsys, "sweep", "momentum-wheel", *options)

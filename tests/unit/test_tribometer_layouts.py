@@ -9,12 +9,11 @@ import openpyxl
 import pytest
 from commands import column_map, document, refused, written
 
+from separatrix import InputError, reduce_log
 from separatrix.friction.logs import UnmappedError, read_column_map, read_log
 from separatrix.friction.logs.log import seconds
 from separatrix.friction.logs.tables import is_clock, is_number
-from separatrix.friction.reduction import reduce_log
 from separatrix.front import main
-from separatrix.ground.errors import InputError
 
 ROWS = 240
 RNG = np.random.default_rng(6)
@@ -252,16 +251,12 @@ def test_a_test_far_from_its_siblings_is_flagged(elsewhere, tmp_path, capsys):
     assert [len(one) for one in told] == [0, 0, 0, 1, 0]
 
 
-def test_a_step_that_underflows_is_reduced(tmp_path):
-    """Two values of 1e-200: the square of their difference is zero, and nothing is divided by it."""
+def test_numbers_beyond_all_range_are_reduced_or_left_out(tmp_path):
+    """Two values of 1e-200, of which the square is zero; 1e10 N over 1e-300 N, a row without a friction."""
     rows = [f"{i},0.{100 + i % 7}" for i in range(60)]
     rows[30:32] = ["30,1e-200", "31,2e-200"]
     (log,) = read(tmp_path, "time [s],COF\n" + "\n".join(rows) + "\n")
     assert 0.09 < reduce_log(log).friction < 0.11
-
-
-def test_a_ratio_of_forces_that_overflows_is_left_out(tmp_path):
-    """1e10 N over 1e-300 N: a row without a friction."""
     rows = [f"{i},1.2,10" for i in range(60)]
     rows[30] = "30,1e10,1e-300"
     (log,) = read(tmp_path, "time [s],Ff [N],Fn [N]\n" + "\n".join(rows) + "\n")

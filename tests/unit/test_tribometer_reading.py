@@ -11,11 +11,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from raw_logs import as_written
 
-from separatrix.friction.logs import read_log
+from separatrix import InputError, read_log
 from separatrix.friction.logs.column_map import ColumnMap
 from separatrix.friction.logs.log import RawLog
 from separatrix.friction.logs.names import ALIASES, MEANINGS, NAMES, ranks, scale_of
-from separatrix.ground.errors import InputError
 from separatrix.ground.units import UNITS
 
 ROWS = 60
@@ -209,7 +208,6 @@ THE_SAME = {  # a log, or a log and its map
     },
 }
 
-
 LOGGED = {  # columns beside friction and time
     "Anton Paar text, nano": {
         "normal_force": 5.0 * ONE,
@@ -301,9 +299,8 @@ def test_what_stands_beside_the_numbers_is_kept(tmp_path):
     assert "comma, decimal comma" in read(tmp_path, lines('"t, s","mu"', '"{T}","{F}"')).format
     assert (read(tmp_path, GAPS).rows, np.isnan(read(tmp_path, GAPS).temperature).sum()) == (ROWS, 5)
     code = csv({"time [s]": TIME, "COF": FRICTION, "temp [C]": np.where(TIME == 1.25, -9.0, 20.0)})
-    assert (
-        np.nanmin(read(tmp_path, code).temperature) == 264.15
-    )  # a number until the map says that it is none
+    # a number until the map says that it is none
+    assert np.nanmin(read(tmp_path, code).temperature) == 264.15
     known = column_map({"format": {"missing": ["-9"]}})
     assert np.isnan(read(tmp_path, code, known).temperature).sum() == 1
 
@@ -328,7 +325,6 @@ FEW = np.arange(ROWS) % 20 == 5
 TEN = {"Ff [N]": FRICTION * 10.0}
 TENFOLD = as_written(FRICTION * 10.0) / 10.0
 BY_TEN = {"test": {"normal_force": "10 N"}}
-
 
 MADE = {  # columns beside the time, the friction made of them, begin of a note, map
     "percent": ({"COF [%]": FRICTION * 100.0}, as_written(FRICTION * 100.0) / 100.0, "", None),

@@ -21,12 +21,8 @@ STEP = {"map": 0.0401}
 """A step of the friction in the map of a tutorial, to rounding: at a boundary the last bits of a processor's
 own functions decide which way the counted runs fall. What the other verbs print is compared as it is."""
 
-SHOWN = {  # page: blocks of output that are compared
-    "design": 2,
-    "first-ranking": 1,
-    "tribometer": 2,
-    "uncertainty": 0,
-}
+SHOWN = {"design": 2, "first-ranking": 1, "tribometer": 2, "uncertainty": 0}
+"""Page: blocks of output that are compared."""
 
 
 @pytest.fixture(autouse=True)

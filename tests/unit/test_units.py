@@ -8,11 +8,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from separatrix.ground.errors import InputError
+from separatrix import InputError, read_study, resolved, shipped_studies
 from separatrix.ground.units import UNITS, format_number, format_quantity, parse
-from separatrix.study.reading import read_study
-from separatrix.study.sources import resolved
-from separatrix.study.study import shipped_studies
 
 PINT_NAMES = {
     "lbf in": "lbf * inch",
@@ -149,7 +146,6 @@ def test_values_are_shown_in_the_unit_an_engineer_would_choose(row):
 
 
 # Whatever the text, the answer is a finite number or one line of refusal; units change nothing.
-
 
 EXAMPLE = shipped_studies()["cryogenic-turbopump"].read_text(encoding="utf-8")
 

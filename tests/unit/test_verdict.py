@@ -12,10 +12,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import stats
 
-from separatrix.cage import Cause, Ensemble, RunOutcome
+from separatrix import BallModel, Cause, Ensemble, Guidance, MotionModel, PocketShape, RunOutcome
 from separatrix.cage.closed_forms import drive_energy
 from separatrix.chain.ball_traction import BallTraction, FreeBall, SlipField
-from separatrix.study.study import BallModel, Guidance, MotionModel, PocketShape
 from separatrix.verdict import judgement
 from separatrix.verdict.judgement import ENDS, KickCount, Verdict, judge, wilson_interval
 from separatrix.verdict.ranking_records import meet, ranks
@@ -24,7 +23,6 @@ from separatrix.verdict.reasons import CageMotion, force_limit
 GUIDED = replace(CAGE, cage_speed=670.0, guidance=Guidance.OUTER, land_clearance=4e-4)
 SETTLES, WHIRLS = RunOutcome.SETTLES, RunOutcome.WHIRLS
 DRIFTS, UNRESOLVED, ROLLS = RunOutcome.DRIFTS, RunOutcome.UNRESOLVED, RunOutcome.ROLLS
-
 
 STABLE, UNSTABLE, UNDECIDED = Verdict.STABLE, Verdict.UNSTABLE, Verdict.UNDECIDED
 SETTLED, WHIRLING, ON_THE_LAND = CageMotion.SETTLED, CageMotion.WHIRLING, CageMotion.ON_THE_LAND
@@ -180,7 +178,6 @@ RACE = SlipField(
 )  # fmt: skip
 FREE = FreeBall(mass=1e-3, inertia=1e-8, inner=RACE, outer=RACE, fastest_rate=1e4)
 
-
 ONE_IS_ENOUGH = "A cage that is stable with one state is stable among free"
 REACHED = "reaches 30 % of what the races hold; with one state"
 ASKED = [
@@ -234,10 +231,7 @@ def test_verdict_and_probability_are_those_of_the_worst_kick():
         assert result.reason.startswith(f"94 % of the runs from {result.worst_kick:g} m/s whirl")
         assert [count.settles for count in result.by_kick] == [1 if i == worst else 16 for i in range(3)]
         assert [count.whirls for count in result.by_kick] == [15 if i == worst else 0 for i in range(3)]
-
-
-def test_a_whirl_that_is_sure_comes_before_one_that_is_not():
-    """A kick from which fewer settle, but less than half whirl for sure, is not the worst."""
+    # a kick from which fewer settle, but less than half whirl for sure, is not the worst
     mixed = [WHIRLS] * 8 + [UNRESOLVED] * 8
     result = judge(CAGE, ensemble([mixed, [WHIRLS] * 13 + [SETTLES] * 3]))
     assert (result.verdict, result.worst_kick) == (UNSTABLE, 0.5)
@@ -304,15 +298,13 @@ def test_gravity_unbalance_and_leading_balls_drive_too():
 
 
 def test_a_leaning_axis_and_gravity_along_it_drive_in_space():
-    """2 w_z (M g_z + |J_p - J_t| Omega^2 delta / R), w_z = 0.3 mm in bores; the fluid's mass turns too.
-
-    Neither presses the cage on its land, and a cage whose axial motion nothing limits falls for ever.
-    """
+    """2 w_z (M g_z + |J_p - J_t| Omega^2 delta / R), w_z = 0.3 mm in bores; the fluid's mass turns too."""
     body = {"motion": MotionModel.SPACE, "transverse_inertia": 4e-5, "pocket_shape": PocketShape.CYLINDRICAL}
     plain = replace(GUIDED, **body)
     loads = {"axial_gravity": -9.81, "dynamic_unbalance": 1e-3}
     loaded = replace(plain, **loads)
     tilting = abs(plain.moment_of_inertia - 4e-5) * 670.0**2 * 1e-3 / plain.pitch_radius
+    # Neither presses the cage on its land, and a cage whose axial motion nothing limits falls for ever.
     assert drive_energy(plain) == drive_energy(GUIDED)
     extra = drive_energy(loaded) - drive_energy(plain)
     assert extra == pytest.approx(6e-4 * (0.05 * 9.81 + tilting), rel=1e-9)
@@ -325,25 +317,17 @@ def test_a_leaning_axis_and_gravity_along_it_drive_in_space():
 
 def test_evidence_is_the_worst_of_forces_and_offsets_and_the_median_of_the_rest():
     """Largest of the largest over all kicks, among them what a ledger leaves open; medians at the worst."""
-    result = judge(
-        GUIDED,
-        ensemble(
-            [[SETTLES] * 3, [SETTLES, SETTLES, WHIRLS]],
-            largest_offset=[[1e-4, 3e-4, 2e-4], [1e-4] * 3],
-            mean_offset=[[9e-4] * 3, [1e-4, 2e-4, 3e-4]],
-            offset_spread=[[9e-4] * 3, [5e-5, 2e-5, 3e-5]],
-            largest_land_force=[[5.0, 70.0, 6.0], [1.0] * 3],
-            largest_contact_force=[[50.0, 7.0, 6.0], [1.0] * 3],
-            energy_imbalance=[[1e-12, 0.0, 1e-3], [0.0] * 3],
-            end_energy=[[9.0] * 3, [1e-6, 4e-3, 2e-6]],
-            pocket_power=[[9.0] * 3, [-1.0, -1.0, 4.0]],
-            land_power=[[9.0] * 3, [-1.0, -1.0, 0.5]],
-            rubbing_force=[[9.0] * 3, [2.0, 4.0, 70.0]],
-            rubbing_speed=[[9.0] * 3, [1.0, 2.0, 50.0]],
-            followed=[[0.1, 0.2, 1.2], [0.3] * 3],
-            strike_rate=[[9.0] * 3, [100.0, 300.0, 700.0]],
-        ),
-    )
+    runs = ensemble(
+        [[SETTLES] * 3, [SETTLES, SETTLES, WHIRLS]],
+        largest_offset=[[1e-4, 3e-4, 2e-4], [1e-4] * 3], mean_offset=[[9e-4] * 3, [1e-4, 2e-4, 3e-4]],
+        offset_spread=[[9e-4] * 3, [5e-5, 2e-5, 3e-5]], largest_land_force=[[5.0, 70.0, 6.0], [1.0] * 3],
+        largest_contact_force=[[50.0, 7.0, 6.0], [1.0] * 3], energy_imbalance=[[1e-12, 0.0, 1e-3], [0.0] * 3],
+        end_energy=[[9.0] * 3, [1e-6, 4e-3, 2e-6]], pocket_power=[[9.0] * 3, [-1.0, -1.0, 4.0]],
+        land_power=[[9.0] * 3, [-1.0, -1.0, 0.5]], rubbing_force=[[9.0] * 3, [2.0, 4.0, 70.0]],
+        rubbing_speed=[[9.0] * 3, [1.0, 2.0, 50.0]], followed=[[0.1, 0.2, 1.2], [0.3] * 3],
+        strike_rate=[[9.0] * 3, [100.0, 300.0, 700.0]],
+    )  # fmt: skip
+    result = judge(GUIDED, runs)
     assert result.impact_rate == 200.0
     assert (result.largest_tilt, result.axial_travel, result.cone_ratio) == (None, None, None)
     assert (result.energy_imbalance, result.longest_run) == (1e-3, 1.2)
@@ -360,11 +344,10 @@ def test_evidence_is_the_worst_of_forces_and_offsets_and_the_median_of_the_rest(
 
 # Verdict, probability and worst kick of counts nobody thought of; ranks of any thresholds.
 
-
 quick = settings(max_examples=150)
 
 OF_THREE = replace(ON_A_LAND, ball_count=3)
-SETTLED, WHIRLED, ROLLED = int(RunOutcome.SETTLES), int(RunOutcome.WHIRLS), int(RunOutcome.ROLLS)
+SETTLED, WHIRLED = int(RunOutcome.SETTLES), int(RunOutcome.WHIRLS)
 
 
 @st.composite

@@ -101,13 +101,9 @@ class ToolAnswer(Generic[Record]):
 
     def __getattr__(self, name: str) -> Any:
         """Name of the record; of an answer without one, of its document."""
-        if name.startswith("_"):
+        if name.startswith("_") or (self.record is None and name not in self.document()):
             raise AttributeError(name)
-        if self.record is not None:
-            return getattr(self.record, name)
-        if name not in self.document():
-            raise AttributeError(name)
-        return self.document()[name]
+        return self.document()[name] if self.record is None else getattr(self.record, name)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -74,10 +74,7 @@ NAMED = {"DIR": "a folder", "ADDRESS": "a scheduler, or local:N"}
 
 
 def option_value(kind: str, text: Any, option: str, note: Option) -> Any:
-    """Return the value of an option of a kind from its text; flags and most texts are taken as they are.
-
-    An empty name, as from an unset variable, is refused.
-    """
+    """Return the value of an option from its text; an empty name, as from an unset variable, is refused."""
     if kind == "files":
         return tuple(option_value("file", one, option, note) for one in text)
     if text is None:
@@ -144,10 +141,7 @@ def options_of(asked: Tool, given: Given) -> Any:
 
 
 def answered(asked: Tool, given: Given, compute: Callable[[], Document], to: Path | None) -> Document:
-    """Compute a document, print it or its page, and save it in `to`, tested before the work; return it.
-
-    With `--quiet` the page is without its notes.
-    """
+    """Compute a document, print it or its page, save it in `to`, tested before the work; return it."""
     from separatrix.present.blocks import Level
     from separatrix.present.text import text
     from separatrix.verbs.answer_files import page_of_document, save_answer
@@ -178,8 +172,7 @@ def run(verb: Verb, given: Given) -> int:
     with interruptible("runs that were finished are kept." if is_kept else "no file was written."):
         options = options_of(verb, given)
         study = asked_study(verb, given["study"], given.get("model"))
-        usual = Path(study.name) if verb.writes_data and not given["json"] else None
-        to = given["out"] or usual
+        to = given["out"] or (Path(study.name) if verb.writes_data and not given["json"] else None)
         made = answered(verb, given, partial(document_of, verb, study, given, to, options), to)
     if made.get("complete") is not False:
         return ANSWERED
@@ -289,7 +282,6 @@ def _page(given: Given) -> int:
 
 # The report.
 
-
 REPORT_EPILOG = (
     "Of a folder: from the answers in it. Of a study: bearing, traction, simulate, "
     "restitution and rank (without [ranking]: stability) are computed into its folder first; answers to the "
@@ -338,8 +330,8 @@ def _report(given: Given) -> int:
         if json:
             answer_json(made.document(files))
             return ANSWERED
-        where = f"\nThe report is {' and '.join(map(str, files))}\n"
-        written = where if files and not given["quiet"] else ""
+        where = " and ".join(map(str, files))
+        written = f"\nThe report is {where}\n" if where and not given["quiet"] else ""
         answer(f"{harmless(made.summary())}\n{written}")
     return ANSWERED
 

@@ -14,6 +14,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future
+from traceback import walk_stack
 from types import FrameType
 from typing import TYPE_CHECKING, TextIO, TypeVar
 
@@ -119,11 +120,8 @@ def _end(thread: threading.Thread) -> None:
 
 def is_importing(frame: FrameType | None) -> bool:
     """Whether a module is being imported at a place in the program, or in what called it."""
-    while frame is not None:
-        if frame.f_code.co_filename.startswith("<frozen importlib"):
-            return True
-        frame = frame.f_back
-    return False
+    frames = () if frame is None else (one for one, _ in walk_stack(frame))
+    return any(one.f_code.co_filename.startswith("<frozen importlib") for one in frames)
 
 
 @contextlib.contextmanager

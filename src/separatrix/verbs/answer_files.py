@@ -128,17 +128,11 @@ VERBS = (
 
 REPORTS = (".html", ".htm")
 MOST_BYTES = 256 * 1024**2
-REPORT = re.compile(
-    rb"""<script\b[^>]{0,200}\bid=["']separatrix-answers["'][^>]{0,200}>(.*?)</script""", re.DOTALL
-)
+REPORT = re.compile(rb"""(?s)<script\b[^>]{0,200}\bid=["']separatrix-answers["'][^>]{0,200}>(.*?)</script""")
 """The documents of the answers in a report."""
 
-ENVELOPE: dict[str, type] = {
-    **dict.fromkeys(("separatrix_version", "name", "title"), str),
-    "seed": int,
-    "units": dict,
-    "warnings": list,
-}
+ENVELOPE: dict[str, type] = dict.fromkeys(("separatrix_version", "name", "title"), str)
+ENVELOPE |= {"seed": int, "units": dict, "warnings": list}
 """What every answer has beside those of its verb, and the type of each."""
 
 DAMAGE = (ValueError, TypeError, LookupError, AttributeError, RecursionError, ArithmeticError, StopIteration)

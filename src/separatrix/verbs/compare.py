@@ -247,7 +247,6 @@ def compared(
 
 # --- the page -----------------------------------------------------------------------------------
 ON_A_SCREEN = 12
-
 LEGEND = (
     f"{MARK} more than counting noise: the 95 % interval of the change excludes 0 (of shares of runs: "
     "Newcombe's). It takes both answers as independent: with the same seed it is too wide, if anything."

@@ -26,6 +26,9 @@ REVOLUTIONS = 1e3, 1e12
 
 MOST_SPEED = 1e6
 
+PHASES = "Duty cycle, CSV: speeds and loads in its first row, and time_share; a phase a row."
+TEST = 'Speed of the inner ring in a test, "9000 rpm".'
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Options:
@@ -33,13 +36,8 @@ class Options:
 
     revolutions: Annotated[str | float, Option("Of the rings, up to which bearings are followed.", "N")] = 1e9
     samples: Samples = 4096
-    cases: Annotated[
-        Path | Sequence[Mapping[str, float]] | None,
-        Option("Duty cycle, CSV: speeds and loads in its first row, and time_share; a phase a row.", "FILE"),
-    ] = None
-    accelerated: Annotated[
-        str | float | None, Option('Speed of the inner ring in a test, "9000 rpm".', "SPEED")
-    ] = None
+    cases: Annotated[Path | Sequence[Mapping[str, float]] | None, Option(PHASES, "FILE")] = None
+    accelerated: Annotated[str | float | None, Option(TEST, "SPEED")] = None
 
     def __post_init__(self) -> None:
         """Read a table of phases: an answer has the phases themselves."""
@@ -198,19 +196,17 @@ def life_figure(answer: Part) -> Figure:
     def each(name: str) -> list[float]:
         return [getattr(one, name) for one in rows]
 
+    low, high = each("first_decile"), each("last_decile")
     chance = Panel(
         title=f"a  Cages of {answer.candidate}",
         x=x,
         y=axis("probability_stable", "-", [], low=-0.02, high=1.02),
         marks=(
             Across(at=0.5, axis="y", line=":"),
-            Band(
-                x=revolutions, low=each("first_decile"), high=each("last_decile"),
-                name="a tenth to nine in ten of the bearings",
-            ),
+            Band(x=revolutions, low=low, high=high, name="a tenth to nine in ten of the bearings"),
             Trace(x=revolutions, y=each("probability_stable"), colour=BLUE, name="P(stable), mean"),
         ),
-    )  # fmt: skip
+    )
     films = each("film_inner") + each("film_outer")
     film = Panel(
         title="b  Film on the tracks, median",

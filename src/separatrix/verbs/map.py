@@ -218,10 +218,8 @@ LEGEND = (
 
 def map_figure(answer: Part) -> Figure:
     """Return the share of the runs that whirl, where it changes, and what has no verdict."""
-    x, y = (
-        q.parameter_axis(one.parameter, one.get("unit") or "-", one.get("values"), is_tight=True)
-        for one in (answer.x, answer.y)
-    )
+    axes = [(one.parameter, one.get("unit") or "-", one.get("values")) for one in (answer.x, answer.y)]
+    x, y = (q.parameter_axis(*one, is_tight=True) for one in axes)
     kick = "" if KICK in _names(answer) else q.fill(answer, ", initial disturbance {kick}")
     marks = (*_cells(answer), *_overlays(answer))
     panel = Panel(title=f"Share of the runs that whirl{kick}", x=x, y=y, marks=marks)
@@ -231,25 +229,22 @@ def map_figure(answer: Part) -> Figure:
 def _cells(answer: Part) -> Iterator[Mark]:
     """Yield the share at each point, and what has none."""
     x, y = answer.x.get("values"), answer.y.get("values")
-    points = answer.points
-    table = [points[i :: len(y)] for i in range(len(y))]
+    table = [answer.points[i :: len(y)] for i in range(len(y))]
     label = f"{q.quantity('probability_whirl').label} [-]"
     values = [[one.probability_whirl for one in row] for row in table]
     hover = [[_hover(answer, one) for one in row] for row in table]
     yield Cells(x=x, y=y, values=values, label=label, low=0.0, high=1.0, colours="cividis", hover=hover)
-    striped = "undecided: the runs, or their drift, allow no verdict"
     refused = [[one.get("state") == "REFUSED" for one in row] for row in table]
     undecided = [[one.decision == "UNDECIDED" for one in row] for row in table]
     if any(map(any, refused)):
         yield Hatched(x=x, y=y, where=refused, name="refused", strokes="xxxx", fill="#9a9a9a")
     if any(map(any, undecided)):
-        yield Hatched(x=x, y=y, where=undecided, name=striped)
+        yield Hatched(x=x, y=y, where=undecided, name="undecided: the runs, or their drift, allow no verdict")
 
 
 def _hover(answer: Part, point: Part) -> str:
-    place = ", ".join(
-        q.at(one, one.parameter, point.get(way)) for way, one in (("x", answer.x), ("y", answer.y))
-    )
+    both = ("x", answer.x), ("y", answer.y)
+    place = ", ".join(q.at(one, one.parameter, point.get(way)) for way, one in both)
     if point.decision is None:
         return f"{place}: {point.reason}"
     share = f"share that whirls {q.show(point, 'probability_whirl')}, {point.runs} runs"

@@ -65,6 +65,7 @@ def page(answer: Part) -> Page:
     rows = own.materials
     known = [row for row in rows if judged(row)]
     apart = [row.name for row in known if row.get("paper_verdict") not in (None, row.verdict)]
+    paper = f"the paper's method{'' if apart else ' (the same verdicts)'}"
     kicks = ", ".join(of.disturbances(answer))
     every = [(one.name, row.name, row) for one in answer.environments for row in one.materials]
     every += [("overall", row.name, row) for row in answer.overall]
@@ -91,11 +92,7 @@ def page(answer: Part) -> Page:
         *(overall if others else []),
         q.all_numbers("all numbers", ("environment", "material"), every),
         draws=True,
-        more=[
-            *[f"the paper's method{'' if apart else ' (the same verdicts)'}"] * has_safety(rows),
-            "all evidence",
-            *["the other environments"] * bool(others),
-        ],
+        more=[*[paper] * has_safety(rows), "all evidence", *["the other environments"] * bool(others)],
     )
 
 
@@ -301,9 +298,8 @@ def overview(answer: Part, own: Part) -> fig.Figure:
     for at, ((where, rows), marker, colour) in enumerate(looks):
         shift = 0.26 - 0.52 * (at + 0.5) / len(others)
         found.append(trace(rows, shift, where, marker=marker, colour=colour, size=3.6))
-    labels = tuple(
-        fig.Label(y=place[row.name], text=verdict(row), **look_of(verdict(row))) for row in own.materials
-    )
+    words = [(place[row.name], verdict(row)) for row in own.materials]
+    labels = tuple(fig.Label(y=at, text=word, **look_of(word)) for at, word in words)
     ticks = tuple(f"{one}  {ranks[one]}" for one in place)
     y = fig.Axis(label="", low=-0.6, high=len(place) - 0.4, names=ticks)
     title = f"{what}, larger is better; ranks in {own.name}"

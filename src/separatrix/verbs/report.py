@@ -13,14 +13,7 @@ from separatrix.ground.errors import InputError, json_text
 from separatrix.ground.files import staged
 from separatrix.present.blocks import Note, Page, joined
 from separatrix.verbs import VERBS, verb_named
-from separatrix.verbs.answer_files import (
-    asked_by,
-    inputs_of_study,
-    page_of_document,
-    read_answer,
-    refusing_damage,
-    save_answer,
-)
+from separatrix.verbs import answer_files as saved
 from separatrix.verbs.parts.bearing_drawing import bearing_picture
 from separatrix.verbs.parts.credibility_blocks import credibility
 
@@ -103,11 +96,11 @@ def report_of(
     kept = {verb: found[verb] for verb in ORDER if verb in found}
     if not kept:
         raise InputError(where, "has no answer that a report shows", cure="Name the study instead.")
-    pages = {one: page_of_document(verb_named(one), kept[one], f"{where}: {one}.json") for one in kept}
+    pages = {one: saved.page_of_document(verb_named(one), kept[one], f"{where}: {one}.json") for one in kept}
     main, first = next(iter(pages.items()))
     caveats = [Note(text, "caveat") for text in missing]
     for verb, one in kept.items():
-        with refusing_damage(where):
+        with saved.refusing_damage(where):
             names = differing(kept[main], one)
         text = f"`{verb}` was computed from other inputs than `{main}`: {names} differ."
         caveats += [Note(text, "caveat")] if names else []
@@ -122,7 +115,8 @@ def report_of(
 def differing(one: Document, other: Document) -> str:
     """Return the inputs in which two answers differ, the first four by name; empty if there are none."""
     ours, theirs = (
-        dict(inputs_of_study(found["study"])) | {"version of separatrix": (found["separatrix_version"], None)}
+        dict(saved.inputs_of_study(found["study"]))
+        | {"version of separatrix": (found["separatrix_version"], None)}
         for found in (one, other)
     )
     names = [key for key in {**ours, **theirs} if ours.get(key) != theirs.get(key)]
@@ -139,9 +133,9 @@ def report_of_study(
     """
     from separatrix.study.reading import require
 
-    asked, found, missing = asked_by(study), dict[str, Document](), list[str]()
+    asked, found, missing = saved.asked_by(study), dict[str, Document](), list[str]()
     for path in [folder / f"{verb}.json" for verb in ORDER] if folder is not None else []:
-        one = read_answer(path) if path.exists() else {}
+        one = saved.read_answer(path) if path.exists() else {}
         if one.get("complete", True) is True and asked.items() <= one.items():
             found[path.stem] = one
     last = "stability" if study.ranking is None else "rank"
@@ -158,7 +152,7 @@ def report_of_study(
             missing.append(f"`{verb.name}` was not computed: {error}")
             continue
         if folder is not None:
-            save_answer(folder, verb, made, pictures=pictures)
+            saved.save_answer(folder, verb, made, pictures=pictures)
         if made.get("complete") is False:
             return None
         found[verb.name] = made

@@ -116,9 +116,7 @@ def _differing(a: object, b: object, key: str, scale: float | None) -> Iterator[
         for i, (one, other) in enumerate(zip(a, b, strict=True)):
             yield from _differing(one, other, f"{key}[{i}]", size)
     elif a != b or isinstance(a, bool) != isinstance(b, bool):
-        relative = None
-        if is_number(a) and is_number(b):
-            relative = abs(a - b) / (scale or max(abs(a), abs(b)))
+        relative = abs(a - b) / (scale or max(abs(a), abs(b))) if is_number(a) and is_number(b) else None
         yield {"key": key, "stored": _short(a), "computed": _short(b), "relative": relative}
 
 

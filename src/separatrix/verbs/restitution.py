@@ -36,12 +36,11 @@ def compute(study: Study, _options: NoOptions) -> RestitutionAnswer:
     overdamped = overdamped_notes(solution.restitution)
     _ = solution.clearances  # refused, and noted
     stiffness, speed = solution.restitution.ball_cage_stiffness, solution.impact_speed
+    returned = returned_share(solution.mobility.traction, solution.felt_mass, stiffness, speed)
     return RestitutionAnswer(
         solution=solution,
         impact_speed=speed,
-        effective_restitution_factor=returned_share(
-            solution.mobility.traction, solution.felt_mass, stiffness, speed
-        ),
+        effective_restitution_factor=returned,
         film_thickness_here=study.film.thickness or 0.0,
         lubrication=solution.lubrication,
         notes=(*solution.notes, *overdamped),

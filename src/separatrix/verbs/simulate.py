@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 from separatrix.ground.document import Part
 from separatrix.present import view
 from separatrix.present.blocks import Block, Facts, Heading, Level, Note, Page, Picture, View, facts
-from separatrix.present.figure import Figure, Panel
+from separatrix.present.figure import Figure
 from separatrix.present.quantity_text import fill, places_table, show
 from separatrix.verbs.parts.answer_page import figure, figure_heading, page_of
 from separatrix.verbs.parts.chain_blocks import clearance_blocks, heat_blocks
@@ -221,13 +221,11 @@ def sign_blocks(answer: Part) -> list[Block]:
     law = f"none: at 0.8 of the speed the same run {answer.slower_outcome}, here it {answer.signs_outcome}"
     if "torque_exponent" in answer:
         law = "{torque_exponent} from 0.8 of the speed ({slower_torque}) on; balls on races {race_exponent}"
+    balls = f"free, by which this run {answer.signs_outcome}" if answer.signs_with_free_balls else None
     return [
         Heading("Signs on a test rig"),
         facts(
-            (
-                "Balls",
-                f"free, by which this run {answer.signs_outcome}" if answer.signs_with_free_balls else None,
-            ),
+            ("Balls", balls),
             ("Torque of the shaft", fill(answer, torque)),
             ("Loudest in the housing", line),
             ("Torque goes with speed to the power", fill(answer, law)),
@@ -239,8 +237,6 @@ def sign_blocks(answer: Part) -> list[Block]:
 
 POCKET = ("pocket_angle", "half_play", "pocket_impacts", "impacts_per_turn", "pocket_rubbing_power")
 POCKETS = "Each pocket over the whole run."
-
-
 MOVING = "The moving cage: play, turn, zoom."
 CAPTION = (
     "The run: path and whirl of the cage centre, its offset, the forces, in space the tilt of its axis; the "
@@ -252,12 +248,10 @@ def _figure(answer: Part) -> Figure:
     """Return path and whirl of the centre; offset, forces and in space tilt against time."""
     from separatrix.verbs.parts import run_pictures as panels
 
-    rows: list[tuple[Panel, ...]] = [
-        (panels.orbit(answer), panels.spectrum(answer)),
-        (panels.offset(answer), panels.forces(answer)),
-    ]
-    rows += [(panels.tilt(answer),)] if "lean" in answer else []
-    return figure(answer, *rows, height=2.2)
+    centre = panels.orbit(answer), panels.spectrum(answer)
+    course = panels.offset(answer), panels.forces(answer)
+    tilt = [(panels.tilt(answer),)] if "lean" in answer else []
+    return figure(answer, centre, course, *tilt, height=2.2)
 
 
 VERB = Verb(

@@ -154,11 +154,9 @@ def case_table(answer: Part) -> Table:
     def of(one: Part) -> Column:
         return Column(q.head_of(one.name), lambda case: q.value_of(one, one.name, case.get(one.name)))
 
-    names = JUDGED if answer.margins or answer.verdicts else SOLVED
+    names = [one for one in (JUDGED if answer.margins or answer.verdicts else SOLVED) if has(answer, one)]
     columns = [text_column("case", lambda case: case.case), *map(of, answer.parameters)]
-    columns += [
-        evidence_column(name) if name in EVIDENCE else q.column(name) for name in names if has(answer, name)
-    ]
+    columns += [evidence_column(name) if name in EVIDENCE else q.column(name) for name in names]
     if answer.verdicts or any(map(is_refused, answer.cases)):
         words = text_column("verdict", lambda case: "refused" if is_refused(case) else case.verdict or "-")
         columns.append(words)

@@ -119,9 +119,8 @@ def shear_panel(answer: Part) -> fig.Panel:
         field = getattr(answer, race).shear
         strip = len(field.across) - 1 - (len(field.across) - 1) // 4
         x, bound = field.along[strip], field.bound[strip]
-        place, creep = (
-            number_of(field, name, getattr(field, name)[strip]) for name in ("across", "creep_ratio")
-        )
+        names = "across", "creep_ratio"
+        place, creep = (number_of(field, name, getattr(field, name)[strip]) for name in names)
         name = f"{race} race at y = {place}, $xi$ = {creep}"
         marks.append(fig.Band(x=x, low=[-one for one in bound], high=bound, colour=colour, opacity=0.12))
         marks.append(fig.Trace(x=x, y=field.shear[strip], colour=colour, line=line, name=name))

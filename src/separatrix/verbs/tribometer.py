@@ -281,8 +281,6 @@ def _word(name: str, of: Callable[[Part], Part] = itself) -> Column:
 
 PAIR = ("material", "medium", "counterface")
 TEST = text_column("test", lambda one: one.source)
-
-
 COUNTED = ("steady_rows", "rows", "cycles", "wear_coefficient", "wear_error")
 
 

@@ -233,13 +233,8 @@ def routes(page: Page) -> APIRouter:
 
     @router.get("/study/{name:path}")
     def study(name: str) -> Response:
-        return editor(
-            name,
-            page_of="study.html",
-            verbs=[verb_named(verb) for verb in VERBS],
-            asked_of=asked_of,
-            answers=page.answered(name),
-        )
+        verbs = [(verb := verb_named(one), asked_of(verb)) for one in VERBS]
+        return editor(name, page_of="study.html", verbs=verbs, answers=page.answered(name))
 
     @router.post("/edit/{name:path}")
     def edit(name: str, sent: Form) -> Response:

@@ -40,12 +40,9 @@ _HEADER = re.compile(rb"^\s*\[bearing\]|^\s*extends\s*=", re.MULTILINE)
 _BEGINNING = 64 * 1024
 
 TEMPLATES = Environment(
-    loader=PackageLoader("separatrix.front.page"),
-    autoescape=True,
-    undefined=StrictUndefined,
-    trim_blocks=True,
-    lstrip_blocks=True,
+    loader=PackageLoader("separatrix.front.page"), autoescape=True, undefined=StrictUndefined
 )
+TEMPLATES.trim_blocks = TEMPLATES.lstrip_blocks = True
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -244,26 +244,24 @@ def answered(job: Job, folder: Folder, send: Send) -> tuple[str, str]:
             return _reduced(source, place, question, send)
         verb, model = verb_named("check" if job.verb == REPORT else job.verb), question.pop("model", None)
         study = asked_study(verb, source, str(model) if model else None)
-
-        def begin(what: str) -> None:
-            send(message=what, left=None)
+        begin = partial(send, left=None)
 
         def compute(verb: Verb, options: Any = None) -> Computed:
             return computed(verb, study, options, folder=place, progress=reporting(send))
 
         def part(verb: Verb) -> Document:
-            begin(f"Computing {verb.name} for the report.")
+            begin(message=f"Computing {verb.name} for the report.")
             return document(verb, compute(verb))
 
         if job.verb == REPORT:
             report = report_of_study(study, part, place, pictures=True)
             if report is None:
                 return INTERRUPTED
-            begin("Writing the report.")
+            begin(message="Writing the report.")
             report.write(place, with_pdf=find_spec("typst") is not None)
             return "finished", ""
         found = compute(verb, verb.options(**question))
-        begin("Drawing the figures and writing the files.")
+        begin(message="Drawing the figures and writing the files.")
         save_answer(place, verb, document(verb, found))
         taken = f"{found.runs_taken} runs were taken from an earlier job." if found.runs_taken else ""
         return ("finished", taken) if found.is_complete else INTERRUPTED

@@ -17,13 +17,10 @@ MOST_NOTES = 3
 """Notes that are shown on a screen; they come with the gravest first."""
 
 INTERRUPTED = "Interrupted: only what was finished is here."
-
 PROPERTIES = ("elastic_modulus", "poisson_ratio", "density", "thermal_expansion")
-
 INPUT = Quantity(label="", digits=7)
 
 Json = Mapping[str, Any]
-
 APPENDIX = Level.REPORT | Level.SHEET
 
 
@@ -96,9 +93,7 @@ def value_words(value: Any, unit: str) -> str:
         return ", ".join(value_words(one, unit) for one in value) or "-"
     if value is None or isinstance(value, bool) or not isinstance(value, int | float):
         return "-" if value is None else str(value)
-    if unit in ("", "-"):
-        return f"{value:g}"
-    return alone(value, INPUT, unit)
+    return f"{value:g}" if unit in ("", "-") else alone(value, INPUT, unit)
 
 
 def _materials(study: Json, level: Level) -> list[Block]:

@@ -23,7 +23,6 @@ SHOULDER, WALL, WIDTH, CAGE_WIDTH = 0.3, 0.22, 1.5, 1.36
 """Height of a land above the groove, thickness of a cage, width of a ring and of a cage over the ball's
 diameter, where the study states none."""
 
-
 RINGS = "inner", "outer"
 
 
@@ -95,7 +94,6 @@ def bearing_picture(answer: Part, contacts: Part | None) -> Picture:
         sizes += [f"{key.replace('_', ' ')} {text}"] if text else []
     dashed = "Dashed: at common proportions, where the study states no size"
     caption = f"Section through the axis, to scale: {', '.join(sizes)}. {dashed}."
-
     return Picture("bearing", lambda: figure(answer, (section_panel(of, angles),), height=3.4), caption)
 
 

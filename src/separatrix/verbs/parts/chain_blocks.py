@@ -15,9 +15,9 @@ def clearance_blocks(found: Part | None) -> list[Block]:
 
 def clearance_facts(found: Part | None) -> list[tuple[str, str]]:
     """Return each clearance of the cage at rest and as it runs, with its strains; none if they are stated."""
-    rows: list[tuple[str, str]] = []
     if found is None:
-        return rows
+        return []
+    rows: list[tuple[str, str]] = []
     for words, rest, runs in (
         ("Running pocket clearance", "pocket_at_rest", "pocket"),
         ("Along the axis", "pocket_axial_at_rest", "pocket_axial"),
@@ -46,7 +46,7 @@ def restitution_blocks(chain: Part, level: Level = Level.LONG) -> list[Block]:
         mark = OVERDAMPED if chain.get(f"restitution_factor{end}") == 0.0 else ""
         return Column(head, lambda name: cell(chain, name + end, mark * name.startswith("rest")))
 
-    stiffness = "ball_cage_stiffness"
+    columns, stiffness = (text_column("", named), factor(""), factor("_free_spin")), "ball_cage_stiffness"
     hertz = "{restitution_factor_hertz} in an impact at the impact speed, less in a harder one"
     return [
         Heading("Restitution", level),
@@ -62,9 +62,7 @@ def restitution_blocks(chain: Part, level: Level = Level.LONG) -> list[Block]:
             "$M_C$.",
             level & Level.REPORT,
         ),
-        Table(
-            "restitution", (text_column("", named), factor(""), factor("_free_spin")), FACTORS, level=level
-        ),
+        Table("restitution", columns, FACTORS, level=level),
         facts(
             ("Damping of each race", fill(chain, "{inner_damping} inner, {outer_damping} outer")),
             (named(stiffness), f"{show(chain, stiffness)} ({chain.stiffness_source})"),

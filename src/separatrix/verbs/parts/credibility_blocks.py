@@ -45,15 +45,14 @@ def credibility(documents: Mapping[str, Document]) -> list[Block]:
     """Return the levels of the program, and what the answers to one study add to them."""
     study = next(iter(documents.values()))["study"]
     levels = (text_column(words, partial(_level, key)) for key, words in FACTORS.items())
+    columns = (text_column("part", itemgetter("name")), *levels)
     notes = {text for one in documents.values() for text in one["warnings"]}
     uncertain = ", ".join(one["name"] for one in study["uncertain_inputs"])
     varied = ", ".join(f"`{verb}`" for verb in ("sensitivity", "sweep", "map") if verb in documents)
     outside = f"{len(notes) or 'no'} notes on what is outside its range"
     return [
         Heading("Credibility", Level.REPORT),
-        Table(
-            "credibility", (text_column("part", itemgetter("name")), *levels), claims(), CAPTION, Level.REPORT
-        ),
+        Table("credibility", columns, claims(), CAPTION, Level.REPORT),
         facts(
             ("Input pedigree", _pedigree(study)),
             ("Use assessment", outside + _extrapolated(documents.get("rank", {}))),
@@ -94,7 +93,6 @@ def _confidences(part: Any) -> Iterator[str]:
 def _extrapolated(ranked: Json) -> str:
     """In how many rows of a ranking the friction is extrapolated."""
     places = (one for one in ranked.get("environments", ()) if one["name"] == ranked["environment"])
-    found = [
-        bool(row["extrapolation"]) for one in places for row in one["materials"] if "extrapolation" in row
-    ]
-    return f"; the friction of {sum(found)} of {len(found)} candidates is extrapolated" if found else ""
+    found = [row["extrapolation"] for one in places for row in one["materials"] if "extrapolation" in row]
+    beyond = sum(map(bool, found))
+    return f"; the friction of {beyond} of {len(found)} candidates is extrapolated" if found else ""

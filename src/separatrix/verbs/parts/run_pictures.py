@@ -72,9 +72,8 @@ def orbit(answer: Part) -> fig.Panel:
     Boundaries come before the path, the land wide and light: neither hides the other or a path along it.
     """
     path, land, play = smooth_path(answer), land_boundary(answer), largest_play(answer)
-    most = 1.12 * max(
-        float(np.abs(path).max()), play or 0.0, 0.0 if land is None else float(land.max()), 1e-9
-    )
+    at_land = 0.0 if land is None else float(land.max())
+    most = 1.12 * max(float(np.abs(path).max()), play or 0.0, at_land, 1e-9)
     marks: list[fig.Mark] = []
     if land is not None:
         marks.append(_around(land, "land clearance", colour=fig.VERMILION, width=3.5, opacity=0.45))
@@ -196,9 +195,8 @@ def spectrum(answer: Part) -> fig.Panel:
     title = "b  Whirl: velocity of the centre"
     if "whirl_frequency" in answer and answer.whirl_direction:
         title += f"; judged part {show(answer, 'whirl_frequency')}"
-        marks.append(
-            fig.Across(at=answer.whirl_direction * answer.whirl_frequency, colour=fig.VERMILION, line="--")
-        )
+        whirl = answer.whirl_direction * answer.whirl_frequency
+        marks.append(fig.Across(at=whirl, colour=fig.VERMILION, line="--"))
     marks.append(fig.Trace(x=frequency[at].tolist(), y=share[at].tolist(), colour=fig.BLUE, width=0.8))
     label, unit = "frequency; backward < 0 < forward", answer.unit("whirl_frequency")
     x = axis("whirl_frequency", unit, [most], label=label, low=-most, high=most)

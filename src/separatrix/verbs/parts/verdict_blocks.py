@@ -295,7 +295,6 @@ def curve_blocks(curve: Part, level: Level = Level.ALWAYS) -> list[Block]:
         f"disturbance, {show(curve, 'middle_kick')}; fewer below, more above.{band if curve.band else ''} "
         f"Disturbances: {', '.join(disturbances(curve))}. Linear limit: no clearance, balls at rest."
     )
-
     columns = (
         column("restitution_factor"),
         column("critical_friction"),
