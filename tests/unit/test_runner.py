@@ -382,8 +382,8 @@ def test_without_the_extra_the_refusal_names_it(monkeypatch):
 
 # How far a long job is: the told share never falls, and the time left is about right from a tenth on.
 # The files in `recorded_work` are events of `rank dry-reaction-wheel` and `map cryogenic-turbopump` in one
-# thread: what the job announced to `Work` (load, spend, keep, end, finish) of a place, by kind and number, and
-# when it reported, by the processor time of the process, which no neighbour on the machine changes:
+# thread: what the job announced to `Work` (load, spend, keep, end, finish) of a place, by kind and number,
+# and when it reported, by the processor time of the process, which no neighbour on the machine changes:
 # ``report`` [s] with the time spent on runs under way [s], or for a map, which counts its points, ``pace``
 # [s] with done and total.
 
