@@ -1,7 +1,7 @@
 """Critical friction of a cage from its worst disturbance, and the safety factor of a friction against it."""
 
 import math
-from dataclasses import replace
+from dataclasses import asdict, replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -10,6 +10,8 @@ import pytest
 import separatrix
 from separatrix.cage.disturbance import settings_for
 from separatrix.cage.moving_cage import moving_cage
+from separatrix.ground.document import Part
+from separatrix.present.quantity_text import cell, show
 from separatrix.study.study import BallModel, CageModel, MotionModel, PocketShape, StabilitySettings
 from separatrix.verdict.beyond_models import Pocket
 from separatrix.verdict.crossing import Count, Response, Side
@@ -52,6 +54,15 @@ def test_the_safety_factor_is_the_ratio_of_two_frictions():
     wider = safety_factor(LIMIT, 0.125, (0.1, 0.15), 1.0)
     ends = math.hypot(math.log(0.8), math.log(1.2), 1.0)
     assert math.log(wider.safety_factor_low / 2.0) == pytest.approx(-ends)
+
+
+def test_a_friction_that_may_be_zero_leaves_the_safety_factor_without_an_upper_end():
+    """Two tests that scatter by half of their mean: S was 3.88 (1.67 to 466242462315.32)."""
+    found = safety_factor(LIMIT, 0.125, (0.0, 0.25))
+    assert (found.safety_factor, found.safety_factor_high) == (2.0, None)
+    part = Part(asdict(found), {})
+    assert show(part, "safety_factor") == f"2.00 (> {found.safety_factor_low:.2f})"
+    assert cell(part, "safety_factor").text == show(part, "safety_factor")
 
 
 def test_beyond_what_was_searched_only_the_lower_end_is_known():

@@ -73,9 +73,9 @@ def alone(value: Number, quantity: Quantity, unit: str) -> str:
         return ABSENT
     size, symbol = scale([number], unit, quantity.unit)
     text = _one(number / size, quantity)
-    if isinstance(value, Estimate) and value.low is not None and value.high is not None:
-        low, high = (_one(end / size, quantity, sign=False) for end in (value.low, value.high))
-        text += f" ({low} to {high})"
+    if isinstance(value, Estimate) and value.low is not None:
+        low, *high = (_one(end / size, quantity, sign=False) for end in value[1:] if end is not None)
+        text += f" ({low} to {high[0]})" if high else f" (> {low})"
     return f"{text} {symbol}" if symbol else text
 
 
@@ -106,6 +106,8 @@ def in_column(values: Sequence[Number], quantity: Quantity, unit: str) -> tuple[
         one = text(middle(value), form)
         if isinstance(value, Estimate) and value.has_ends and value.value is not None:
             one += f" ({text(value.low, plain)} to {text(value.high, plain)})"
+        elif isinstance(value, Estimate) and value.low is not None and value.value is not None:
+            one += f" (> {text(value.low, plain)})"
         if isinstance(value, Estimate) and value.is_beyond:
             one = f"> {text(value.low, form)}"
         found.append(one)

@@ -445,7 +445,7 @@ def marks(
         if any(isinstance(one, Estimate) for one in values):
             known = [one if isinstance(one, Estimate) else Estimate(one) for one in values]
             found |= {"ends_along": way, "low": [one.low for one in known]}
-            found |= {"high": [one.high for one in known]}
+            found |= {"high": [one.value if one.high is None else one.high for one in known]}
             values = [one.value for one in known]
         found[way] = values
     return Trace(hover=tuple(hover(row) for row in rows) if hover else (), **found)
