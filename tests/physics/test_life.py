@@ -15,7 +15,16 @@ from separatrix.chain.contacts import bearing_state
 from separatrix.chain.slip_work import TrackWork, track_work
 from separatrix.study.study import Film, KinematicModel, Race, WearRates
 from separatrix.verdict.crossing import PLACES, Count, steepness
-from separatrix.verdict.life_table import Node, _accelerated, _bearing_wear, _drawn, _tests, life, wear_rates
+from separatrix.verdict.life_table import (
+    Node,
+    _accelerated,
+    _bearing_wear,
+    _drawn,
+    _life,
+    _tests,
+    life,
+    wear_rates,
+)
 from separatrix.verdict.wear_life import (
     THICKEST,
     BearingWear,
@@ -228,6 +237,13 @@ def test_race_friction_is_the_mean_by_load():
     found = course([replace(PHASE[0], bearing=bearing)], worn(film_wear=1e-9), 1e6)
     whole = 0.4 - 0.35 * (1.0 - math.exp(-5.0))
     assert found.race_friction[-1, 0] == pytest.approx(0.75 * 0.4 + 0.25 * whole, rel=1e-6)
+
+
+def test_what_limits_the_answer_is_its_first_note():
+    """Pockets of no wear limit that open beyond the table's 3 mm; a screen shows three notes."""
+    found = _life("cage", PHASE, worn(cage_wear=1e-12), {}, 1.0, 1e9, None, ["another"])
+    beyond = "In 100 % of the draws the pockets open beyond 3 mm by the end"
+    assert [one.partition(":")[0] for one in found.notes] == [beyond, "another"]
 
 
 def test_phases_of_a_duty_cycle_share_the_time():

@@ -1,7 +1,7 @@
 """Critical friction of a cage from its worst disturbance, and the safety factor of a friction against it."""
 
 import math
-from dataclasses import replace
+from dataclasses import asdict, replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -10,6 +10,8 @@ import pytest
 import separatrix
 from separatrix import Runner, moving_cage
 from separatrix.cage.disturbance import settings_for
+from separatrix.ground.document import Part
+from separatrix.present.quantity_text import cell, estimate, show
 from separatrix.study.study import BallModel, CageModel, MotionModel, PocketShape, StabilitySettings
 from separatrix.verdict.beyond_models import Pocket
 from separatrix.verdict.crossing import Count, Response, Side
@@ -180,3 +182,13 @@ def test_one_switch_chooses_ball_and_motion(models, ball, motion):
     assert (solution.design.ball_model, solution.design.motion_model) == (ball, motion)
     assert solution.paper.design.is_of_paper
     assert solution.paper.restitution is solution.restitution
+
+
+def test_a_friction_that_may_be_zero_leaves_the_safety_factor_without_an_upper_end():
+    """Two tests that scatter by half of their mean: S was 3.88 (1.67 to 466242462315.32)."""
+    found = safety_factor(LIMIT, 0.125, (0.0, 0.25))
+    assert (found.safety_factor, found.safety_factor_high) == (2.0, None)
+    part = Part(asdict(found), {})
+    assert show(part, "safety_factor") == f"2.00 (> {found.safety_factor_low:.2f})"
+    assert cell(part, "safety_factor").text == show(part, "safety_factor")
+    assert estimate(part, "safety_factor").has_ends

@@ -6,6 +6,7 @@ import pickle
 import re
 from dataclasses import replace
 from importlib.resources import files
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -17,7 +18,7 @@ from separatrix.ground.schema import keys_of
 from separatrix.study import library
 from separatrix.study.library import Datum, Library, choose, contradictions, with_files
 from separatrix.study.reading import study_again
-from separatrix.study.study import WearRates
+from separatrix.study.study import WearRates, shipped_studies
 from separatrix.study.wear_rates import library_rate
 from separatrix.verdict.life_table import wear_rates
 
@@ -584,3 +585,13 @@ def test_friction_of_a_film_in_vacuum_is_a_table_of_its_own():
     table = LIBRARY.record("friction table", "MoS2 in vacuum").content
     assert table.rows["MoS2 sputtered dense"]["vacuum, steel"].mean == 0.06
     assert LIBRARY.names("friction table")[0] == "pin-on-disk-77K"
+
+
+@pytest.mark.parametrize(
+    "kind", ["bearing material", "film", "cage material", "friction table", "bearing", "study"]
+)
+def test_the_page_on_study_files_lists_every_shipped_name(kind):
+    """Of the kinds that it lists name by name."""
+    page = (Path(__file__).parents[2] / "docs" / "reference" / "study-file.md").read_text(encoding="utf-8")
+    names = shipped_studies() if kind == "study" else LIBRARY.names(kind)
+    assert [one for one in names if f"`{one}`" not in page] == []

@@ -18,8 +18,15 @@ from separatrix.verbs.compare import RESULTS, difference_interval, differing, re
 from separatrix.verbs.compare import compared as compared_answers
 from separatrix.verbs.map import map_figure, nearest_words, unchanged
 from separatrix.verbs.parts.bearing_drawing import CAGE, bearing_picture, section_of
-from separatrix.verbs.parts.verdict_blocks import deciding, linear_law, pocket_friction, verdict_sentences
+from separatrix.verbs.parts.verdict_blocks import (
+    deciding,
+    linear_law,
+    pocket_friction,
+    power_facts,
+    verdict_sentences,
+)
 from separatrix.verbs.rank import by_paper
+from separatrix.verbs.stability import own_words
 from separatrix.verbs.sweep import SHOWN, case_table, envelope_figure, worst_words
 
 SHIPPED = "cryogenic-turbopump"
@@ -102,6 +109,44 @@ def test_check_says_what_a_moving_cage_will_be_refused_for(tmp_path, edits, more
         with pytest.raises(ValueError, match=words) as refused:
             computed(verb_named(verb), study)
         assert (verb, str(refused.value)) in said
+
+
+def test_check_says_that_heat_is_refused_of_a_fluid_unknown_at_its_temperature(tmp_path):
+    """Liquid nitrogen is known at its boiling point, 77.4 K, and a pump is at 100 K."""
+    warm = ('temperature = "77 K"', 'temperature = "100 K"')
+    study = changed(tmp_path, "cryogenic-turbopump", warm, more="\n[cooling]\nswirl = 0.4\n")
+    found = [one for one in answer("check", study).refusals if "no density near 100 K" in one.sentence]
+    assert [one.verb for one in found] == ["bearing", "simulate"]
+    with pytest.raises(ValueError, match="no density near 100 K") as refused:
+        computed(verb_named("bearing"), study)
+    assert str(refused.value) == found[0].sentence
+
+
+def test_check_says_that_bare_races_have_no_life(tmp_path):
+    """It asked for the wear coefficient of a film that is not there."""
+    film = ("material", 'material = "PTFE transfer film"'), ("thickness", 'thickness = "0.5 um"')
+    edits = [(line, f"# {name}") for name, line in film]
+    study = changed(tmp_path, "cryogenic-turbopump", *edits, more="\n[wear]\nbare_friction = 0.3\n")
+    (said,) = (one.sentence for one in answer("check", study).refusals if one.verb == "life")
+    assert said == "[film] thickness is missing: bare races have no film that wears."
+
+
+def test_a_fluid_that_no_environment_has_is_in_its_refusal(tmp_path):
+    """A mistyped one is not of the library either, and is not refused as such."""
+    study = changed(tmp_path, "cryogenic-turbopump", ('fluid = "liquid nitrogen"', 'fluid = "LN3"'))
+    with pytest.raises(ValueError, match=r"matches \[operation\] fluid LN3 and 440C\. Write"):
+        computed(verb_named("rank"), study)
+
+
+@pytest.mark.parametrize(("load", "is_pressed"), [("0 N", False), ("10 N", True)])
+def test_a_pair_without_external_load_is_not_pressed_by_one(tmp_path, load, is_pressed):
+    """Both of its bearings have the preload."""
+    pair = f'[operation]\naxial_load = "{load}"\npreload = "150 N"\narrangement = "back-to-back"'
+    path = tmp_path / "pair.toml"
+    path.write_text(f'extends = "momentum-wheel"\n{pair}\n')
+    page = verb_named("bearing").page(answer("bearing", read_study(path)))
+    (said,) = (one for one in text(page).splitlines() if "This bearing" in one)
+    assert said.endswith(": the external load presses it") is is_pressed
 
 
 def test_notes_do_not_stand_below_uncertain_inputs_that_are_not_there(tmp_path):
@@ -239,6 +284,31 @@ def test_the_headline_says_whether_a_tight_land_decides(row, wide, words):
     start = "The land stops the cage before its pockets do (land clearance 200 µm, pocket clearance 250 µm)"
     assert said.startswith(start)
     assert said.endswith(words.format("With a land of 0.4 mm the critical friction of Phenolic would be "))
+
+
+def test_heat_of_rubbing_has_the_digits_of_the_headline():
+    """It was 10 W of heat below a headline of 10.5 W."""
+    values = {"rubbing_force": 3.14, "rubbing_speed": 33.4, "rubbing_power": 10.49}
+    row = Part(values | {"pocket_power": 0.0, "land_power": 0.0}, {"rubbing_power": "W"})
+    assert power_facts(row)[1][1].endswith("10.5 W of heat")
+
+
+@pytest.mark.parametrize(("eta", "is_said"), [(0.0, True), (0.3, False)])
+def test_an_overdamped_bearing_is_not_the_curve_at_its_restitution_factor(eta, is_said):
+    """Both have eta = 0: on the curve half of the runs whirl at no friction, in the bearing at 0.487."""
+    (said,) = own_words(Part({"here": {"restitution_factor": eta, "critical_friction": 0.487}}, {}))
+    assert ("overdamped: its race damping is below that of the curve at 0" in said) is is_said
+
+
+def test_the_headline_states_no_force_beyond_what_the_races_hold():
+    """It was up to 3140 N where the table below it had > 593."""
+    forces = {"largest_contact_force": 3140.0, "force_limit": 593.0, "force_exceeds_races": True}
+    values = candidate().values | forces | {"cage_motion": "ROLLING", "pocket_power": 37.1}
+    units = {"force_limit": "N", "largest_contact_force": "N", "pocket_power": "W"}
+    (said,) = deciding(
+        Part({"effects": None, "candidate": None}, {}), [Part(values | {"land_clearance": None}, units)]
+    )
+    assert said.endswith("with pocket forces above what the races hold, 593 N.")
 
 
 def test_a_critical_friction_that_was_not_found_is_no_friction_of_a_whirl():

@@ -52,8 +52,8 @@ class Estimate(NamedTuple):
 
     @property
     def has_ends(self) -> bool:
-        """Whether both ends are known."""
-        return self.low is not None and self.high is not None
+        """Whether it has an interval, perhaps without an upper end."""
+        return self.low is not None and not self.is_beyond
 
 
 Number = float | Estimate | None
@@ -73,9 +73,9 @@ def alone(value: Number, quantity: Quantity, unit: str) -> str:
         return ABSENT
     size, symbol = scale([number], unit, quantity.unit)
     text = _one(number / size, quantity)
-    if isinstance(value, Estimate) and value.low is not None and value.high is not None:
-        low, high = (_one(end / size, quantity, sign=False) for end in (value.low, value.high))
-        text += f" ({low} to {high})"
+    if isinstance(value, Estimate) and value.low is not None:
+        low, *high = (_one(end / size, quantity, sign=False) for end in value[1:] if end is not None)
+        text += f" ({low} to {high[0]})" if high else f" (> {low})"
     return f"{text} {symbol}" if symbol else text
 
 
@@ -105,7 +105,8 @@ def in_column(values: Sequence[Number], quantity: Quantity, unit: str) -> tuple[
     for value in values:
         one = text(middle(value), form)
         if isinstance(value, Estimate) and value.has_ends and value.value is not None:
-            one += f" ({text(value.low, plain)} to {text(value.high, plain)})"
+            low, high = (text(end, plain) for end in value[1:])
+            one += f" (> {low})" if value.high is None else f" ({low} to {high})"
         if isinstance(value, Estimate) and value.is_beyond:
             one = f"> {text(value.low, form)}"
         found.append(one)

@@ -210,7 +210,7 @@ QUANTITIES: dict[str, Quantity] = {
     "drift_rate": Q(label="drift rate", head="drift", digits=2),
     "largest_contact_force": Q(label="largest force at a pocket", head="pocket force"),
     "largest_land_force": Q(label="largest force on the land", head="land force"),
-    "rubbing_power": Q(label="power of rubbing on the land", head="rubbing", digits=2),
+    "rubbing_power": Q(label="power of rubbing on the land", head="rubbing"),
     "whirl_frequency": Q(label="whirl frequency of the cage centre", head="whirl"),
     "energy_imbalance": Q(label="energy imbalance", digits=2),
     "pocket_clearance": Q(label="pocket clearance as it runs", digits=4),
@@ -445,7 +445,7 @@ def marks(
         if any(isinstance(one, Estimate) for one in values):
             known = [one if isinstance(one, Estimate) else Estimate(one) for one in values]
             found |= {"ends_along": way, "low": [one.low for one in known]}
-            found |= {"high": [one.high for one in known]}
+            found |= {"high": [one.value if one.high is None else one.high for one in known]}
             values = [one.value for one in known]
         found[way] = values
     return Trace(hover=tuple(hover(row) for row in rows) if hover else (), **found)

@@ -153,8 +153,6 @@ def life(
     """
     if study.wear is None:
         raise InputError(study.name, "lacks the section [wear]", cure=TEST)
-    if study.film.thickness is None:
-        raise InputError("[film] thickness", "is missing: bare races have no film that wears")
     candidate = reference_candidate(study, study.ranking) if study.ranking else None
     solution, runner = solve(study, candidate), runner or Runner()
     rates = wear_rates(study, study.wear, candidate)
@@ -221,8 +219,10 @@ def wear_rates(study: Study, wear: WearRates, candidate: Candidate | None) -> di
     Raises
     ------
     InputError
-        Neither has one.
+        Neither has one, or the races are bare.
     """
+    if study.film.thickness is None:
+        raise InputError("[film] thickness", "is missing: bare races have no film that wears")
     own = (candidate and candidate.material) or (study.cage and study.cage.material) or None
     cage = candidate.name if candidate else "the cage"
     asked = (wear.film_wear, study.film.material, "the film"), (wear.cage_wear, own, cage)
@@ -477,10 +477,10 @@ def _life(
     shares = [float(np.count_nonzero((most == i) & (life > 0.0)) / known) for i in range(len(moved))]
     at_10, at_50, at_90 = (_quantile(life, share, speed) for share in (0.1, 0.5, 0.9))
     table, land = phases[0].table, phases[0].bearing.land
-    notes += _beyond(found.clearance[-1], float(table.pocket_clearance[-1]), "the pockets open")
+    beyond = [*_beyond(found.clearance[-1], float(table.pocket_clearance[-1]), "the pockets open")]
     notes += [NO_EXPONENT] if land and table.land_widening == 1.0 else []
     if land and table.land_widening > 1.0:
-        notes += _beyond(found.land_clearance[-1], table.land_widening * land.clearance, "the land opens")
+        beyond += _beyond(found.land_clearance[-1], table.land_widening * land.clearance, "the land opens")
     return Life(
         candidate=name,
         draws=life.size,
@@ -505,7 +505,7 @@ def _life(
         phases=len(phases),
         accelerated=tested,
         complete=True,
-        notes=tuple(dict.fromkeys(notes)),
+        notes=tuple(dict.fromkeys([*beyond, *notes])),
     )
 
 

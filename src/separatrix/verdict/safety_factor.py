@@ -159,7 +159,8 @@ def safety_factor(
     """Safety factor of a friction in the pocket; without friction the factor has no value.
 
     Deviations of the logarithms add as squares. `spread` is half the 95 % interval of what uncertain inputs
-    do to the logarithm of the critical friction. Beyond what was searched only the lower end is known.
+    do to the logarithm of the critical friction. Beyond what was searched only the lower end is known, and
+    of a friction whose interval begins at 0.
     """
     value = limit.own_critical_friction
     low, high = limit.own_critical_friction_low, limit.own_critical_friction_high
@@ -172,12 +173,12 @@ def safety_factor(
         return SafetyFactor(safety_factor_low=low / most)
 
     def reach(of_limit: Ratio, of_friction: Ratio) -> float:
-        ratios = (max(of_limit, TINY) / value, max(of_friction, TINY) / friction)
+        ratios = (max(of_limit, TINY) / value, of_friction / friction)
         return math.hypot(*map(math.log, ratios), spread)
 
     factor, upper = value / friction, value if high is None else high
     return SafetyFactor(
         safety_factor=factor,
         safety_factor_low=factor * math.exp(-reach(low, most)),
-        safety_factor_high=factor * math.exp(reach(upper, least)),
+        safety_factor_high=factor * math.exp(reach(upper, least)) if least > 0.0 else None,
     )
