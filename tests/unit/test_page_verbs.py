@@ -246,6 +246,17 @@ def test_the_headline_says_whether_a_tight_land_decides(row, wide, words):
     assert said.endswith(words.format("With a land of 0.4 mm the critical friction of Phenolic would be "))
 
 
+def test_the_headline_states_no_force_beyond_what_the_races_hold():
+    """It was up to 3140 N where the table below it had > 593."""
+    forces = {"largest_contact_force": 3140.0, "force_limit": 593.0, "force_exceeds_races": True}
+    values = candidate().values | forces | {"cage_motion": "ROLLING", "pocket_power": 37.1}
+    units = {"force_limit": "N", "largest_contact_force": "N", "pocket_power": "W"}
+    (said,) = deciding(
+        Part({"effects": None, "candidate": None}, {}), [Part(values | {"land_clearance": None}, units)]
+    )
+    assert said.endswith("with pocket forces above what the races hold, 593 N.")
+
+
 def test_a_critical_friction_that_was_not_found_is_no_friction_of_a_whirl():
     """The highest that was searched is named as that."""
     said = verdict_sentences([candidate(critical=(None, 1.0, None))], "air")

@@ -163,7 +163,10 @@ def deciding(answer: Part, rows: Sequence[Part]) -> Iterator[str]:
         yield fill(best, words)
     weak = [row for row in known if row.cage_motion == "ROLLING" and row.verdict == "STABLE"]
     if weak:
-        words = "a weak whirl remains, fed {pocket_power}, with pocket forces up to {largest_contact_force}"
+        force = "up to {largest_contact_force}"
+        if weak[0].force_exceeds_races:
+            force = "above what the races hold, {force_limit}"
+        words = "a weak whirl remains, fed {pocket_power}, with pocket forces " + force
         yield f"{weak[0].name} rolls in its pockets: {fill(weak[0], words)}."
     beyond = [bool(row.extrapolation) for row in known]
     if any(beyond):
