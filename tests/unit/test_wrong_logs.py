@@ -125,6 +125,14 @@ def test_a_wrong_column_map_is_refused_in_one_line(tmp_path, what):
     assert words in refusal_line(path, lambda path: read_log(path, column_map(document, "map.toml")))
 
 
+def test_a_mark_between_thousands_is_not_taken_for_a_missing_value(tmp_path):
+    """A quoted load of "20,217" mN beside friction with points."""
+    path = written(tmp_path, lines("t [s],COF,Fn [mN]", *(f'{i},0.12,"20,217"' for i in range(9))), "log.txt")
+    map_ = column_map({"format": {"decimal": "."}}, "map.toml")
+    words = 'must be a number; got "20,217". If its mark is between thousands, export the log without such'
+    assert words in refusal_line(path, lambda path: read_log(path, map_))
+
+
 @pytest.mark.parametrize(
     ("content", "words"),
     [

@@ -325,6 +325,8 @@ def _values(
         raise InputError(where, f'must be a time ("{form}")', got, f"Forms of times: {TIMES}.")
     if tables.is_clock(bare) or re.match(r"\d{1,4}([-/.])\d{1,2}\1\d", bare):
         cure = f"For a column of times, add to the column map: {TIMES}."
+    elif _GROUPED.match(bare):
+        cure = "If its mark is between thousands, export the log without such marks."
     raise InputError(where, "must be a number", got, cure)
 
 
