@@ -108,6 +108,17 @@ def test_check_says_what_a_moving_cage_will_be_refused_for(tmp_path, edits, more
         assert (verb, str(refused.value)) in said
 
 
+def test_check_says_that_heat_is_refused_of_a_fluid_unknown_at_its_temperature(tmp_path):
+    """Liquid nitrogen is known at its boiling point, 77.4 K, and a pump is at 100 K."""
+    warm = ('temperature = "77 K"', 'temperature = "100 K"')
+    study = changed(tmp_path, "cryogenic-turbopump", warm, more="\n[cooling]\nswirl = 0.4\n")
+    found = [one for one in answer("check", study).refusals if "no density near 100 K" in one.sentence]
+    assert [one.verb for one in found] == ["bearing", "simulate"]
+    with pytest.raises(ValueError, match="no density near 100 K") as refused:
+        computed(verb_named("bearing"), study)
+    assert str(refused.value) == found[0].sentence
+
+
 def test_notes_do_not_stand_below_uncertain_inputs_that_are_not_there(tmp_path):
     """A guess that is noted is no such input; one with a distribution has the heading."""
     for mass, there in (("25 g", False), ("25 g +- 10 %", True)):

@@ -225,9 +225,8 @@ def _required(study: Study, name: str, temperature: Kelvin) -> float:
     found = fluid_property(study, name, temperature)
     if found is None:
         rule = f"has no {name.replace('_', ' ')} near {format_quantity(temperature, 'K')} in the library"
-        raise InputError(
-            "[operation] fluid", rule, str(study.operation.fluid), "Leave [cooling] out, or name another."
-        )
+        cure = "Leave [cooling] out, or state it in a library file of your own."
+        raise InputError(f"{study.name}: [operation] fluid", rule, str(study.operation.fluid), cure)
     return found
 
 

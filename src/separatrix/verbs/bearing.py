@@ -92,4 +92,4 @@ def balls(answer: Part) -> Table:
     return Table("balls", columns, tuple(answer.balls[:1] if alike else answer.balls))
 
 
-VERB = Verb(name="bearing", compute=compute, page=page)
+VERB = Verb(name="bearing", compute=compute, page=page, links=("coolant",))

@@ -268,5 +268,5 @@ VERB = Verb(
     options=Options,
     needs=("cage",),
     moves_a_cage=True,
-    links=("known_friction", "cage_motion"),
+    links=("known_friction", "cage_motion", "coolant"),
 )

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from separatrix.cage import MovingCage, moving_cage
 from separatrix.chain.exact.rolling import rolling_contact
+from separatrix.chain.heat_balance import heat_balance
 from separatrix.chain.impact_restitution import Restitution
 from separatrix.chain.race_traction import contact_problem
 from separatrix.chain.solution import Solution, solve
@@ -141,6 +142,12 @@ def rolling(solution: Solution) -> None:
 def impact(solution: Solution) -> None:
     """Refuse what no restitution factor is computed of: a pocket without stiffness, no running clearance."""
     _ = solution.clearances, solution.ball_cage_stiffness, solution.inertia
+
+
+def coolant(solution: Solution) -> None:
+    """Refuse a fluid that the library does not know at the temperature of the bearing."""
+    if solution.study.cooling is not None:
+        heat_balance(solution.study, solution.bearing)
 
 
 def push(solution: Solution) -> None:
