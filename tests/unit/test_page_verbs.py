@@ -119,6 +119,15 @@ def test_check_says_that_heat_is_refused_of_a_fluid_unknown_at_its_temperature(t
     assert str(refused.value) == found[0].sentence
 
 
+def test_check_says_that_bare_races_have_no_life(tmp_path):
+    """It asked for the wear coefficient of a film that is not there."""
+    film = ("material", 'material = "PTFE transfer film"'), ("thickness", 'thickness = "0.5 um"')
+    edits = [(line, f"# {name}") for name, line in film]
+    study = changed(tmp_path, "cryogenic-turbopump", *edits, more="\n[wear]\nbare_friction = 0.3\n")
+    (said,) = (one.sentence for one in answer("check", study).refusals if one.verb == "life")
+    assert said == "[film] thickness is missing: bare races have no film that wears."
+
+
 def test_notes_do_not_stand_below_uncertain_inputs_that_are_not_there(tmp_path):
     """A guess that is noted is no such input; one with a distribution has the heading."""
     for mass, there in (("25 g", False), ("25 g +- 10 %", True)):

@@ -153,8 +153,6 @@ def life(
     """
     if study.wear is None:
         raise InputError(study.name, "lacks the section [wear]", cure=TEST)
-    if study.film.thickness is None:
-        raise InputError("[film] thickness", "is missing: bare races have no film that wears")
     candidate = reference_candidate(study, study.ranking) if study.ranking else None
     solution, runner = solve(study, candidate), runner or Runner()
     rates = wear_rates(study, study.wear, candidate)
@@ -221,8 +219,10 @@ def wear_rates(study: Study, wear: WearRates, candidate: Candidate | None) -> di
     Raises
     ------
     InputError
-        Neither has one.
+        Neither has one, or the races are bare.
     """
+    if study.film.thickness is None:
+        raise InputError("[film] thickness", "is missing: bare races have no film that wears")
     own = (candidate and candidate.material) or (study.cage and study.cage.material) or None
     cage = candidate.name if candidate else "the cage"
     asked = (wear.film_wear, study.film.material, "the film"), (wear.cage_wear, own, cage)
