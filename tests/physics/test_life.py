@@ -15,7 +15,16 @@ from separatrix.chain.slip_work import TrackWork, track_work
 from separatrix.chain.solution import solve
 from separatrix.study.study import Film, KinematicModel, Race, WearRates
 from separatrix.verdict.crossing import PLACES, Count, steepness
-from separatrix.verdict.life_table import Node, _accelerated, _bearing_wear, _drawn, _tests, life, wear_rates
+from separatrix.verdict.life_table import (
+    Node,
+    _accelerated,
+    _bearing_wear,
+    _drawn,
+    _life,
+    _tests,
+    life,
+    wear_rates,
+)
 from separatrix.verdict.wear_life import (
     THICKEST,
     BearingWear,
@@ -242,6 +251,13 @@ def test_what_is_unstable_from_the_start_has_no_life():
     """Before anything has worn; what becomes so within the first step has some."""
     assert lives(course(PHASE, worn(pocket_friction=0.8), 1e6))[0] == 0.0
     assert lives(course(PHASE, worn(film_wear=1e-6, pocket_friction=0.2), 1e6))[0] == 0.5
+
+
+def test_what_limits_the_answer_is_its_first_note():
+    """Pockets of no wear limit that open beyond the table's 3 mm; a screen shows three notes."""
+    found = _life("cage", PHASE, worn(cage_wear=1e-12), {}, 1.0, 1e9, None, ["another"])
+    beyond = "In 100 % of the draws the pockets open beyond 3 mm by the end"
+    assert [one.partition(":")[0] for one in found.notes] == [beyond, "another"]
 
 
 def test_phases_of_a_duty_cycle_share_the_time():

@@ -291,6 +291,19 @@ def test_every_number_of_a_page_is_the_documents(verb, answers, monkeypatch):
     assert {one for one in found if one is not None} <= known
 
 
+def test_a_life_names_the_state_of_the_clearances_that_open(folder):
+    """They are those that the study states: of a cage at rest they were headed "as it runs"."""
+    document = saved(folder, "life")
+    document["study"]["cage"]["clearances"]["value"] = "at rest, 293 K"
+    heads = [
+        one.head
+        for block in verb_named("life").page(part_of(document)).blocks
+        if isinstance(block, Table)
+        for one in block.shown
+    ]
+    assert "pocket clearance, at rest, 293 K" in heads
+
+
 @pytest.mark.parametrize("verb", VERBS)
 def test_every_medium_shows_every_page(verb, answers):
     """Text, HTML, PDF, workbook; each picture on paper and to hover over; no block is empty."""

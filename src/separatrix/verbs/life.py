@@ -81,7 +81,10 @@ def compute(study: Study, options: Options, runner: Runner) -> LifeAnswer:
 def page(answer: Part) -> Page:
     """Return the page of `life`."""
     rows = [one for place, one in enumerate(answer.course) if place % SHOWN == 0]
-    columns = tuple(column(name) for name in COURSE if name in rows[0])
+    state = answer.values["study"]["cage"]["clearances"]["value"]
+    when = "" if state == "as running" else f", {state}"
+    heads = {f"{one}_clearance": f"{one} clearance{when}" for one in ("pocket", "land")}
+    columns = tuple(column(name, head=heads.get(name, "")) for name in COURSE if name in rows[0])
     drivers = (text_column("input", lambda row: row.name), column("correlation"))
     return page_of(
         answer,

@@ -477,10 +477,10 @@ def _life(
     shares = [float(np.count_nonzero((most == i) & (life > 0.0)) / known) for i in range(len(moved))]
     at_10, at_50, at_90 = (_quantile(life, share, speed) for share in (0.1, 0.5, 0.9))
     table, land = phases[0].table, phases[0].bearing.land
-    notes += _beyond(found.clearance[-1], float(table.pocket_clearance[-1]), "the pockets open")
+    beyond = [*_beyond(found.clearance[-1], float(table.pocket_clearance[-1]), "the pockets open")]
     notes += [NO_EXPONENT] if land and table.land_widening == 1.0 else []
     if land and table.land_widening > 1.0:
-        notes += _beyond(found.land_clearance[-1], table.land_widening * land.clearance, "the land opens")
+        beyond += _beyond(found.land_clearance[-1], table.land_widening * land.clearance, "the land opens")
     return Life(
         candidate=name,
         draws=life.size,
@@ -505,7 +505,7 @@ def _life(
         phases=len(phases),
         accelerated=tested,
         complete=True,
-        notes=tuple(dict.fromkeys(notes)),
+        notes=tuple(dict.fromkeys([*beyond, *notes])),
     )
 
 
