@@ -20,8 +20,15 @@ from separatrix.verbs.compare import RESULTS, difference_interval, differing, re
 from separatrix.verbs.compare import compared as compared_answers
 from separatrix.verbs.map import map_figure, nearest_words, unchanged
 from separatrix.verbs.parts.bearing_drawing import CAGE, bearing_picture, section_of
-from separatrix.verbs.parts.verdict_blocks import deciding, linear_law, pocket_friction, verdict_sentences
+from separatrix.verbs.parts.verdict_blocks import (
+    deciding,
+    linear_law,
+    pocket_friction,
+    power_facts,
+    verdict_sentences,
+)
 from separatrix.verbs.rank import by_paper
+from separatrix.verbs.stability import own_words
 from separatrix.verbs.sweep import SHOWN, case_table, envelope_figure, worst_words
 from separatrix.verdict.judgement import wilson_interval
 
@@ -264,6 +271,20 @@ def test_the_headline_says_whether_a_tight_land_decides(row, wide, words):
     start = "The land stops the cage before its pockets do (land clearance 200 µm, pocket clearance 250 µm)"
     assert said.startswith(start)
     assert said.endswith(words.format("With a land of 0.4 mm the critical friction of Phenolic would be "))
+
+
+def test_heat_of_rubbing_has_the_digits_of_the_headline():
+    """It was 10 W of heat below a headline of 10.5 W."""
+    values = {"rubbing_force": 3.14, "rubbing_speed": 33.4, "rubbing_power": 10.49}
+    row = Part(values | {"pocket_power": 0.0, "land_power": 0.0}, {"rubbing_power": "W"})
+    assert power_facts(row)[1][1].endswith("10.5 W of heat")
+
+
+@pytest.mark.parametrize(("eta", "is_said"), [(0.0, True), (0.3, False)])
+def test_an_overdamped_bearing_is_not_the_curve_at_its_restitution_factor(eta, is_said):
+    """Both have eta = 0: on the curve half of the runs whirl at no friction, in the bearing at 0.487."""
+    (said,) = own_words(Part({"here": {"restitution_factor": eta, "critical_friction": 0.487}}, {}))
+    assert ("overdamped: its race damping is below that of the curve at 0" in said) is is_said
 
 
 def test_the_headline_states_no_force_beyond_what_the_races_hold():

@@ -210,7 +210,7 @@ QUANTITIES: dict[str, Quantity] = {
     "drift_rate": Q(label="drift rate", head="drift", digits=2),
     "largest_contact_force": Q(label="largest force at a pocket", head="pocket force"),
     "largest_land_force": Q(label="largest force on the land", head="land force"),
-    "rubbing_power": Q(label="power of rubbing on the land", head="rubbing", digits=2),
+    "rubbing_power": Q(label="power of rubbing on the land", head="rubbing"),
     "whirl_frequency": Q(label="whirl frequency of the cage centre", head="whirl"),
     "energy_imbalance": Q(label="energy imbalance", digits=2),
     "pocket_clearance": Q(label="pocket clearance as it runs", digits=4),

@@ -58,6 +58,8 @@ def own_words(answer: Part) -> Iterator[str]:
         yield "The critical friction at the bearing's own restitution factor was not finished."
         return
     at = fill(here, "At this bearing's restitution factor of {restitution_factor} ")
+    if here.restitution_factor == 0.0:
+        at += "(overdamped: its race damping is below that of the curve at 0) "
     if "critical_friction" in here:
         yield fill(here, at + "half of the runs whirl at a pocket friction of {critical_friction}.")
     else:
