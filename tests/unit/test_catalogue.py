@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 from commands import refusal, written
@@ -11,7 +12,7 @@ from separatrix.ground.errors import InputError
 from separatrix.study.library import Library
 from separatrix.study.reading import read_study, study_again
 from separatrix.study.sources import resolved
-from separatrix.study.study import WearRates
+from separatrix.study.study import WearRates, shipped_studies
 from separatrix.study.wear_rates import library_rate
 from separatrix.verdict.life_table import wear_rates
 
@@ -177,3 +178,13 @@ def test_friction_of_a_film_in_vacuum_is_a_table_of_its_own():
     table = LIBRARY.record("friction table", "MoS2 in vacuum").content
     assert table.rows["MoS2 sputtered dense"]["vacuum, steel"].mean == 0.06
     assert LIBRARY.names("friction table")[0] == "pin-on-disk-77K"
+
+
+@pytest.mark.parametrize(
+    "kind", ["bearing material", "film", "cage material", "friction table", "bearing", "study"]
+)
+def test_the_page_on_study_files_lists_every_shipped_name(kind):
+    """Of the kinds that it lists name by name."""
+    page = (Path(__file__).parents[2] / "docs" / "reference" / "study-file.md").read_text(encoding="utf-8")
+    names = shipped_studies() if kind == "study" else LIBRARY.names(kind)
+    assert [one for one in names if f"`{one}`" not in page] == []

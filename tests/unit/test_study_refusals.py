@@ -69,6 +69,8 @@ inner_conformity = 0.52 => inner_conformity = 0,52 :: line 8 ; not valid TOML ; 
 pitch_diameter = "65 mm" => pitch_diameter = 65 mm :: line 5 ; Put quantities in quotes: "65 mm".
 model = "free" => model = free :: line 19 ; Put text in quotes.
 ball_count = 13 => ball_count = 19 :: line 6 ; [bearing] ball_count must be at most 18 ; got 19
+"300 daN" => "300 daN"\ntemperature = "-300 degC"
+    :: [operation] temperature must be > 0 K ; got "-300 degC"
 "65 mm" => "10 mm" :: ball_count ; too large for the pitch circle
 race_friction = 0.1 => race_friction = 3e-5 :: [film] race_friction must be >= 0.0001 ; race control
 "50 mm" => "60 mm" :: [bearing] bore must be smaller ; 53.89 mm

@@ -91,7 +91,7 @@ class Bound(NamedTuple):
             return ""
         bottom, top = ("0" if end == 0.0 else format_quantity(end, unit) for end in (low, high))
         if self.sign and (value < 0.0 or (value == 0.0 and self.sign == "> 0")):
-            return f"must be {self.sign}"
+            return f"must be {self.sign}{' K' * (unit == 'K')}"  # what is below 0 degC is above 0 K
         if self.sign:
             return f"must be >= {bottom}" if value < low else f"must be <= {top}"
         if self.open_low or self.open_high:
