@@ -11,7 +11,7 @@ import separatrix
 from separatrix.cage.disturbance import settings_for
 from separatrix.cage.moving_cage import moving_cage
 from separatrix.ground.document import Part
-from separatrix.present.quantity_text import cell, show
+from separatrix.present.quantity_text import cell, estimate, show
 from separatrix.study.study import BallModel, CageModel, MotionModel, PocketShape, StabilitySettings
 from separatrix.verdict.beyond_models import Pocket
 from separatrix.verdict.crossing import Count, Response, Side
@@ -63,6 +63,7 @@ def test_a_friction_that_may_be_zero_leaves_the_safety_factor_without_an_upper_e
     part = Part(asdict(found), {})
     assert show(part, "safety_factor") == f"2.00 (> {found.safety_factor_low:.2f})"
     assert cell(part, "safety_factor").text == show(part, "safety_factor")
+    assert estimate(part, "safety_factor").has_ends
 
 
 def test_beyond_what_was_searched_only_the_lower_end_is_known():

@@ -52,8 +52,8 @@ class Estimate(NamedTuple):
 
     @property
     def has_ends(self) -> bool:
-        """Whether both ends are known."""
-        return self.low is not None and self.high is not None
+        """Whether it has an interval, perhaps without an upper end."""
+        return self.low is not None and not self.is_beyond
 
 
 Number = float | Estimate | None
@@ -105,9 +105,8 @@ def in_column(values: Sequence[Number], quantity: Quantity, unit: str) -> tuple[
     for value in values:
         one = text(middle(value), form)
         if isinstance(value, Estimate) and value.has_ends and value.value is not None:
-            one += f" ({text(value.low, plain)} to {text(value.high, plain)})"
-        elif isinstance(value, Estimate) and value.low is not None and value.value is not None:
-            one += f" (> {text(value.low, plain)})"
+            low, high = (text(end, plain) for end in value[1:])
+            one += f" (> {low})" if value.high is None else f" ({low} to {high})"
         if isinstance(value, Estimate) and value.is_beyond:
             one = f"> {text(value.low, form)}"
         found.append(one)

@@ -27,6 +27,7 @@ from separatrix.cage.disturbance import settings_for
 from separatrix.cage.ensemble import Ensemble, Runs
 from separatrix.cage.moving_cage import MovingCage, moving_cage
 from separatrix.chain.solution import Solution, solve
+from separatrix.friction.friction_file import FRICTION_LIMIT
 from separatrix.friction.friction_fit import TestedFriction
 from separatrix.ground.errors import InputError, SeparatrixError
 from separatrix.ground.units import Array, MetrePerSecond, Ratio
@@ -171,8 +172,9 @@ def sample(
 ) -> Draws:
     """Draw the uncertain inputs of a study, by default with the measured frictions that it states.
 
-    `samples` is from 1 to `MOST_SAMPLES`, best a power of two; the first of more are the same as fewer. The
-    draws of a seed of the scrambling, by default the study's, are the same on every machine.
+    A measured friction scatters up to the largest that a study takes: without its last draws it would be too
+    low. `samples` is from 1 to `MOST_SAMPLES`, best a power of two; the first of more are the same as fewer.
+    The draws of a seed of the scrambling, by default the study's, are the same on every machine.
 
     Raises
     ------
@@ -187,7 +189,8 @@ def sample(
         raise InputError(study.name, "has no uncertain number to draw", cure=cure)
     points = sobol_points(samples, len(inputs), STREAM, study.stability.seed if seed is None else seed)
     columns = [one.distribution.quantile(points[:, i]) for i, one in enumerate(inputs)]
-    values = np.stack(columns, axis=1)
+    most = [np.inf if one.source == "study" else FRICTION_LIMIT for one in inputs]
+    values = np.minimum(np.stack(columns, axis=1), most)
     return Draws(study=study, inputs=inputs, values=values, probabilities=points)
 
 
