@@ -135,6 +135,24 @@ def test_check_says_that_bare_races_have_no_life(tmp_path):
     assert said == "[film] thickness is missing: bare races have no film that wears."
 
 
+def test_a_fluid_that_no_environment_has_is_in_its_refusal(tmp_path):
+    """A mistyped one is not of the library either, and is not refused as such."""
+    study = changed(tmp_path, "cryogenic-turbopump", ('fluid = "liquid nitrogen"', 'fluid = "LN3"'))
+    with pytest.raises(ValueError, match=r"matches \[operation\] fluid LN3 and 440C\. Write"):
+        computed(verb_named("rank"), study)
+
+
+@pytest.mark.parametrize(("load", "is_pressed"), [("0 N", False), ("10 N", True)])
+def test_a_pair_without_external_load_is_not_pressed_by_one(tmp_path, load, is_pressed):
+    """Both of its bearings have the preload."""
+    pair = f'[operation]\naxial_load = "{load}"\npreload = "150 N"\narrangement = "back-to-back"'
+    path = tmp_path / "pair.toml"
+    path.write_text(f'extends = "momentum-wheel"\n{pair}\n')
+    page = verb_named("bearing").page(answer("bearing", read_study(path)))
+    (said,) = (one for one in text(page).splitlines() if "This bearing" in one)
+    assert said.endswith(": the external load presses it") is is_pressed
+
+
 def test_notes_do_not_stand_below_uncertain_inputs_that_are_not_there(tmp_path):
     """A guess that is noted is no such input; one with a distribution has the heading."""
     for mass, there in (("25 g", False), ("25 g +- 10 %", True)):

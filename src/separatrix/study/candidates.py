@@ -330,9 +330,9 @@ def required_environment(study: Study, question: RankingQuestion) -> str:
     """Return the environment of the bearing."""
     found = environment_of(question)
     if found is None:
-        rule = (
-            "is missing: no environment, or more than one, matches [operation] fluid and the bearing's steel"
-        )
+        at, fluid = study.bearing, study.operation.fluid or "(none)"
+        steels = " or ".join(dict.fromkeys((at.ball_material.name, at.ring_material.name)))
+        rule = f"is missing: none, or more than one, matches [operation] fluid {fluid} and {steels}"
         names = " or ".join(f'"{name}"' for name in question.environments)
         raise InputError(f"{study.name}: [ranking] environment", rule, cure=f"Write environment = {names}.")
     return found

@@ -114,12 +114,14 @@ def pair_blocks(answer: Part) -> list[Block]:
         gap = "no external load this way: the spring follows; against the spring, at the preload"
     elif "gap_load" in pair:
         gap = fill(pair, "an external axial load of {gap_load} at rest")
+    external = answer.values["study"]["operation"]["axial_load"]["value"]
+    pressed = ": the external load presses it" if external else ""
     return [
         Heading("Preloaded pair"),
         facts(
             ("Preload", pair.preload_kind),
             ("Operation", operation_words(answer.values["study"])),
-            ("This bearing", fill(pair, "axial load {own_axial_load}: the external load presses it")),
+            ("This bearing", fill(pair, "axial load {own_axial_load}" + pressed)),
             ("The other bearing", fill(pair, "axial load {other_axial_load}")),
             ("Offset by the preload", fill(pair, "{ring_offset} of each inner ring at rest")),
             ("The pair gaps at", gap),
