@@ -271,9 +271,10 @@ def candidate(verdict="STABLE", critical=(0.248, 0.231, 0.269), friction=0.28):
             (0.143, 0.121, 0.204),
             "is not enough for Phenolic. {}0.143 (0.121 to 0.204).",
         ),
-        (candidate(), (0.56, 0.53, 0.62), "does not decide. {}0.560 (0.530 to 0.620)."),
+        (candidate(), (0.56, 0.53, 0.62), "and lowers the critical friction. {}0.560 (0.530 to 0.620)."),
         (candidate(), (0.22, 0.2, 0.24), "does not decide. {}0.220 (0.200 to 0.240)."),
-        (candidate(), (None, 1.0, None), "does not decide. {}> 1.000."),
+        (candidate(), (0.28, 0.26, 0.3), "does not decide. {}0.280 (0.260 to 0.300)."),
+        (candidate(), (None, 1.0, None), "and lowers the critical friction. {}> 1.000."),
     ],
 )
 def test_the_headline_says_whether_a_tight_land_decides(row, wide, words):
