@@ -189,7 +189,8 @@ def sample(
         raise InputError(study.name, "has no uncertain number to draw", cure=cure)
     points = sobol_points(samples, len(inputs), STREAM, study.stability.seed if seed is None else seed)
     columns = [one.distribution.quantile(points[:, i]) for i, one in enumerate(inputs)]
-    most = [np.inf if one.source == "study" else FRICTION_LIMIT for one in inputs]
+    frictions = [one.unit == "-" and one.key.startswith("ranking.") for one in inputs]
+    most = np.where(frictions, FRICTION_LIMIT, np.inf)
     values = np.minimum(np.stack(columns, axis=1), most)
     return Draws(study=study, inputs=inputs, values=values, probabilities=points)
 
