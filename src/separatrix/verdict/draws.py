@@ -189,8 +189,9 @@ def sample(
         raise InputError(study.name, "has no uncertain number to draw", cure=cure)
     points = sobol_points(samples, len(inputs), STREAM, study.stability.seed if seed is None else seed)
     columns = [one.distribution.quantile(points[:, i]) for i, one in enumerate(inputs)]
-    frictions = [one.unit == "-" and one.key.startswith("ranking.") for one in inputs]
-    most = np.where(frictions, FRICTION_LIMIT, np.inf)
+    most = [
+        FRICTION_LIMIT if one.key.startswith("ranking.") and one.unit == "-" else np.inf for one in inputs
+    ]
     values = np.minimum(np.stack(columns, axis=1), most)
     return Draws(study=study, inputs=inputs, values=values, probabilities=points)
 
