@@ -9,10 +9,12 @@ import numpy as np
 CODES = {"utf-8-sig": b"", "utf-16-le-mark": b"\xff\xfe", "utf-16-be-mark": b"\xfe\xff"}
 
 
-def anton_paar(friction, time, *, nano=False, decimal=".", encoding="cp1252", newline="\r\n", missing=""):
+def anton_paar(
+    friction, time, *, laps=None, nano=False, decimal=".", encoding="cp1252", newline="\r\n", missing=""
+):
     """Anton Paar / CSM TRB: ``key : value [unit]`` lines, one line of headers, tabs between the columns."""
     distance, speed, load = time * 0.1, 0.1, 5.0
-    laps = distance / (2 * np.pi * 0.015)
+    laps = distance / (2 * np.pi * 0.015) if laps is None else laps
     force, unit = (1e3, "mN") if nano else (1.0, "N")
     head = [
         "Nano Tribometer" if nano else "TRB3 Tribometer",
