@@ -312,6 +312,16 @@ def test_the_headline_states_no_force_beyond_what_the_races_hold():
     assert said.endswith("with pocket forces above what the races hold, 593 N.")
 
 
+def test_the_headline_names_who_has_another_verdict_with_the_inputs_drawn():
+    """A pump was STABLE in the headline and UNDECIDED, with P(stable) 0.78, below the table."""
+    rows = [
+        Part(candidate().values | {"land_clearance": None, "uncertain_verdict": verdict}, {})
+        for verdict in ("UNDECIDED", candidate().verdict, None)
+    ]
+    (said,) = deciding(Part({"effects": None, "candidate": None}, {}), rows)
+    assert said == "That is at the means of the uncertain inputs; with them drawn: UNDECIDED Phenolic."
+
+
 def test_a_critical_friction_that_was_not_found_is_no_friction_of_a_whirl():
     """The highest that was searched is named as that."""
     said = verdict_sentences([candidate(critical=(None, 1.0, None))], "air")

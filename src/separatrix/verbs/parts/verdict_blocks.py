@@ -138,10 +138,13 @@ def _safety(first: Sequence[Part]) -> str:
 
 
 def deciding(answer: Part, rows: Sequence[Part]) -> Iterator[str]:
-    """Yield what decides a ranking besides frictions: land or pockets, a weak whirl, extrapolation."""
+    """Yield what decides a ranking besides frictions: inputs, land or pockets, a weak whirl, extrapolation."""
     known = [row for row in rows if judged(row)]
     if not known or not has_safety(known):
         return
+    drawn = [(row.get("uncertain_verdict"), row.name, row.verdict) for row in known]
+    if others := [(verdict, name) for verdict, name, mean in drawn if verdict not in (None, mean)]:
+        yield f"That is at the means of the uncertain inputs; with them drawn: {by_verdict(others)}."
     best = known[0]
     both = fill(best, "land clearance {land_clearance}, pocket clearance {pocket_clearance}")
     wide = next((one for one in answer.effects or () if one.name == "wide_land"), None)
