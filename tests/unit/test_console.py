@@ -156,6 +156,14 @@ def test_nothing_is_estimated_before_a_tenth_nor_of_unknown_work(monkeypatch):
     clock[0] += 2.0
     pace(20.0, 100.0)
     assert pace.left == pytest.approx(80.0, rel=1e-12)  # a fifth took 20 s
+    clock[0] += 80.0
+    pace(20.0, 2000.0)
+    assert pace.left == pytest.approx(9900.0, rel=1e-12)  # after a minute a hundredth is enough
+    pace = console.Pace()
+    for _ in range(2):
+        pace(0.0, 400.0)
+        clock[0] += 100.0
+    assert pace.left is None
 
 
 def test_compilation_is_told_once(capsys):

@@ -40,6 +40,9 @@ FIRST_PART = 0.1
 ENOUGH: Second = 10.0
 """Time within which nothing is estimated: what is over by then needs no estimate."""
 
+TOO_LONG: Second = 60.0
+"""Time after which even a rough estimate, from less work than that, is better than none."""
+
 PATIENCE: Second = 1.6
 """Time that an interrupt waits for the work to end by itself, with what was finished."""
 
@@ -182,8 +185,9 @@ class Pace:
             return
         self._done = max(done, self._done)
         self.share = 1.0 - (1.0 - self.share) * (rest / (made + rest) if rest > 0.0 else 0.0)
-        if done >= FIRST_PART * total and now - self._begun > ENOUGH:
-            self.left = (now - self._begun) * rest / done
+        spent = now - self._begun
+        if done > 0.0 and spent > (ENOUGH if done >= FIRST_PART * total else TOO_LONG):
+            self.left = spent * rest / done
 
 
 def compiled_once() -> str:

@@ -138,7 +138,7 @@ def _safety(first: Sequence[Part]) -> str:
 
 
 def deciding(answer: Part, rows: Sequence[Part]) -> Iterator[str]:
-    """Yield what decides a ranking besides frictions: inputs, land or pockets, a weak whirl, extrapolation."""
+    """Yield what decides a ranking besides frictions: inputs, the land, a weak whirl, extrapolation."""
     known = [row for row in rows if judged(row)]
     if not known or not has_safety(known):
         return
