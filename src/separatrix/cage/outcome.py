@@ -8,8 +8,7 @@ unless they say another:
 2. more energy at any moment than `RUNAWAY` times that of the initial disturbance and E together: WHIRLS;
 3. at rest for two looks: SETTLES;
 4. above `HIGH` E in ten looks, no lower in the later five, and turned over by friction: WHIRLS; but what
-   land friction maintains while the pockets take energy from it, below `GROWN` times the energy of 2, counts
-   as settled, and is counted apart;
+   land friction maintains while the pockets take energy from it counts as settled, and is counted apart;
 5. driven: below E for twenty looks, no higher in the later ten, and pockets give less than half: SETTLES;
 6. at the end, by the last fifth: below `WEAK` E a motion that the pockets feed ROLLS in them, any other
    SETTLES; above, it WHIRLS if the pockets feed it and it does not fall, and is UNRESOLVED if it still
@@ -24,9 +23,9 @@ from enum import IntEnum
 from separatrix.cage import rows
 from separatrix.ground.compiled import part
 
-GROWN, RUNAWAY = 100.0, 1e6
-"""Multiples of the energy at the start, with the drive energy: of a whirl that no cage survives, whatever
-maintains it (one motion in ten comes back from there), and of one that soon leaves the range of numbers."""
+RUNAWAY = 1e6
+"""Multiple of the energy at the start, with the drive energy, of a motion that soon leaves the range of
+numbers; from a hundred times it some come to rest."""
 
 REST, STILL = 3e-3, 1e-4
 """Share of the drive energy at which a cage is at rest (speeds of a twentieth), and of the energy of the
@@ -111,12 +110,6 @@ def stays(looks, first, last):
 
 
 @part
-def kept_by_land(energy, settled, limits):
-    """Outcome and cause of a motion that friction on the land maintains."""
-    return (WHIRLS if energy > limits[GROWS] else settled), BY_LAND
-
-
-@part
 def end_of_motion(looks, i, touched, has_grown, limits):
     """Outcome and cause after look i, which ended early if the run `has_grown`; `UNKNOWN` if not plain."""
     energy, drive, end = looks[i, ENERGY], limits[DRIVE], i + 1
@@ -140,9 +133,7 @@ def end_of_motion(looks, i, touched, has_grown, limits):
         over = TURNED_OVER * mean(looks, ENERGY, end - TEN, end)
         is_fed = max(0.0, pocket) + max(0.0, land) > max(over, 0.5 * put_in)
         if above and is_fed and stays(looks, end - TEN, end):
-            if by_land:
-                return kept_by_land(mean(looks, ENERGY, end - TEN, end), settled, limits)
-            return WHIRLS, BY_NOTHING
+            return (settled, BY_LAND) if by_land else (WHIRLS, BY_NOTHING)
     if touched and seen >= 2 * TEN and drive > 0.0 and limits[IS_ADRIFT] == 0.0:
         below = True
         for j in range(end - 2 * TEN, end):
@@ -169,7 +160,7 @@ def end_by_last_fifth(looks, end, touched, settled, limits):
     if last <= limits[RESTING]:
         return settled, BY_NOTHING
     if land > 0.5 * put_in and pocket <= 0.0:
-        return kept_by_land(last, settled, limits)
+        return settled, BY_LAND
     friction = max(0.0, pocket) + max(0.0, land)
     is_fed = friction > 0.5 * put_in and friction > last
     if last <= WEAK * limits[DRIVE]:

@@ -15,12 +15,10 @@ from separatrix.cage.frame import place
 from separatrix.cage.motion import rates
 from separatrix.cage.outcome import (
     BY_WALL,
-    GROWN,
     GROWS,
     LEAST,
     RAMP_START,
     RAMP_TIME,
-    RUNAWAY,
     TURNS_AT,
     UNKNOWN,
     UNRESOLVED,
@@ -270,9 +268,7 @@ def end_grown(i, steps, run, look, had, books, w, s, of_balls, a, p, places, spa
     evidence, limits, ended = books[1], books[5], 0
     for l in range(LANES):
         n = run[l]
-        if n < 0 or evidence[n, OUTCOME] != UNKNOWN:
-            continue
-        if kinetic_energy(s, p, l, space) <= RUNAWAY / GROWN * limits[n, GROWS]:
+        if n < 0 or evidence[n, OUTCOME] != UNKNOWN or kinetic_energy(s, p, l, space) <= limits[n, GROWS]:
             continue
         kept = stored_energy(s, of_balls, a, p, places, l, space) - had[l]
         if end_look(n, look[l], i, steps, books, w, s, places, kept, l):
