@@ -57,7 +57,7 @@ def longer(piece: Piece, duration: float) -> Piece:
     """The same run, followed as long as that is, unless it runs away."""
     numbers = numbers_of(piece.cage, piece.kick, duration)
     limits = numbers.limits.copy()
-    limits[outcome.FROM] = limits[outcome.MOST]
+    limits[outcome.FROM], limits[outcome.GROWS] = limits[outcome.MOST], 1e4 * limits[outcome.GROWS]
     return piece._replace(numbers=numbers._replace(limits=limits))
 
 

@@ -248,7 +248,7 @@ def _limits(cage: MovingCage, kick: MetrePerSecond, duration: Second, least: Sec
     ramp = math.ceil(cage.ramp_time / look)
     found[outcome.DRIVE] = drive
     found[outcome.RESTING] = max(outcome.REST * drive, still)
-    found[outcome.GROWS] = outcome.RUNAWAY * (kicked + drive + turning)
+    found[outcome.GROWS] = outcome.GROWN * (kicked + drive + turning)
     fewest = max(2 * outcome.TEN, math.ceil(FOLLOWED * min(1.0, duration / BRIEF)))
     found[outcome.MOST] = ramp + max(fewest, math.ceil(duration / look))
     found[outcome.LEAST] = math.ceil(least / look)

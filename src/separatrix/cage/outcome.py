@@ -5,7 +5,7 @@ The rules, in their order, after each look; the constants are shares and multipl
 unless they say another:
 
 1. no number any more, or a ball at the edge of its pocket's wall: UNRESOLVED;
-2. more energy at any moment than `RUNAWAY` times that of the initial disturbance and E together: WHIRLS;
+2. more energy at any moment than `GROWN` times that of the initial disturbance and E together: WHIRLS;
 3. at rest for two looks: SETTLES;
 4. above `HIGH` E in ten looks, no lower in the later five, and turned over by friction: WHIRLS; but what
    land friction maintains while the pockets take energy from it counts as settled, and is counted apart;
@@ -23,9 +23,8 @@ from enum import IntEnum
 from separatrix.cage import rows
 from separatrix.ground.compiled import part
 
-RUNAWAY = 1e6
-"""Multiple of the energy at the start, with the drive energy, of a motion that soon leaves the range of
-numbers; from a hundred times it some come to rest."""
+GROWN = 100.0
+"""Multiple of the energy at the start, with the drive energy, from which no motion of a study came back."""
 
 REST, STILL = 3e-3, 1e-4
 """Share of the drive energy at which a cage is at rest (speeds of a twentieth), and of the energy of the

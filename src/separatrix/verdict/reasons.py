@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from separatrix.cage.closed_forms import drift_rate_law, room
-from separatrix.cage.outcome import RUNAWAY, Cause, RunOutcome
+from separatrix.cage.outcome import GROWN, Cause, RunOutcome
 from separatrix.ground.schema import Spelled
 from separatrix.ground.units import Array, Metre, Newton, Watt, format_number, format_quantity
 
@@ -174,7 +174,7 @@ def whirls(ensemble: Ensemble, kick: int) -> str:
     fed = np.maximum(ensemble.pocket_power[kick], 0.0) + np.maximum(ensemble.land_power[kick], 0.0)
     power = fed[whirling & (fed > 0.0)]
     if not power.size:
-        return f"{first}; the energy passes {RUNAWAY / 1e6:g} million times that of disturbance and frame."
+        return f"{first}; the energy passes {GROWN:g} times that of disturbance and frame."
     by_land = np.mean(ensemble.cause[kick][whirling] == Cause.LAND_FRICTION) > 0.5
     what = "friction on the land, more than that in the pockets," if by_land else "friction"
     return f"{first}; {what} feeds the cage {_watt(float(np.median(power)))}."
