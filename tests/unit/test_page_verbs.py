@@ -322,6 +322,13 @@ def test_the_headline_names_who_has_another_verdict_with_the_inputs_drawn():
     assert said == "That is at the means of the uncertain inputs; with them drawn: UNDECIDED Phenolic."
 
 
+def test_the_headline_explains_a_critical_friction_of_zero():
+    """A safety factor of 0.00 stood beside a P(stable) of 0.84, without a word of the land."""
+    row = Part(candidate(critical=(0.0, 0.0, 0.0)).values | {"land_clearance": None}, {})
+    (said,) = deciding(Part({"effects": None, "candidate": None}, {}), [row])
+    assert said.endswith("friction on the land drives them.")
+
+
 def test_a_critical_friction_that_was_not_found_is_no_friction_of_a_whirl():
     """The highest that was searched is named as that."""
     said = verdict_sentences([candidate(critical=(None, 1.0, None))], "air")
