@@ -145,7 +145,7 @@ def deciding(answer: Part, rows: Sequence[Part]) -> Iterator[str]:
     drawn = [(row.get("uncertain_verdict"), row.name, row.verdict) for row in known]
     if others := [(verdict, name) for verdict, name, mean in drawn if verdict not in (None, mean)]:
         yield f"That is at the means of the uncertain inputs; with them drawn: {by_verdict(others)}."
-    if any(row.get("own_critical_friction") == 0.0 for row in known):
+    if any(row.get("own_critical_friction") == 0.0 and row.get("land_clearance") for row in known):
         yield "Half the runs whirl even without friction in the pockets: friction on the land drives them."
     best = known[0]
     both = fill(best, "land clearance {land_clearance}, pocket clearance {pocket_clearance}")
