@@ -499,6 +499,12 @@ def test_a_designation_fills_what_the_study_does_not_give(tmp_path):
     (note,) = (note for note in study.notes if "608" in note)
     assert "pitch_diameter 15 mm of 608 is a guess" in note
     assert study_again(study.content) == study
+    text = 'extends = "ball-218"\n[bearing]\ndesignation = "7008C"\ninner_conformity = 0.53\n'
+    text += "outer_conformity = 0.53\n"
+    pair = read_study(written(tmp_path, text, "pair.toml"))
+    (note,) = (note for note in pair.notes if "7008C" in note)  # a screen shows three notes
+    guesses = "ball_count 17, ball_diameter 7.938 mm, pitch_diameter 54 mm of 7008C are guesses"
+    assert guesses in note
 
 
 def test_keys_of_the_study_override_the_catalogue(tmp_path):

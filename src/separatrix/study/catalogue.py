@@ -32,11 +32,16 @@ def read_bearing(raw: Any, path: KeyPath, reading: Reading) -> BallBearing:
     filled = {key: record.data[key][0] for key in GEOMETRY if key in record.data and key not in given}
     values = {key: _raw(key, datum.value) for key, datum in filled.items()}
     bearing = reading.record(BallBearing, {**raw, "designation": name, **values}, path)
+    guesses: dict[str, str] = {}
     for key, datum in filled.items():
         value = f"{key} {format_quantity(datum.value, UNITS[key])}"
         reading.places[(*path, key)] = f"{record.place}: {name}, {value}; {datum.confidence}: {datum.source}"
         if datum.confidence.startswith("guess"):
-            reading.notes.append(f"[bearing] {value} of {name} is a guess of the library: {datum.source}.")
+            guesses[value] = datum.source
+    if guesses:
+        be = "are guesses" if len(guesses) > 1 else "is a guess"
+        known = "; ".join(dict.fromkeys(guesses.values()))
+        reading.notes.append(f"[bearing] {', '.join(guesses)} of {name} {be} of the library: {known}.")
     return replace(bearing, record=record.plain())
 
 
