@@ -24,7 +24,7 @@ from separatrix.cage import rows
 from separatrix.ground.compiled import part
 
 GROWN = 100.0
-"""Multiple of the energy at the start, with the drive energy, from which few motions come back."""
+"""Multiple of the energy at the start, with the drive energy, from which few motions come to rest."""
 
 REST, STILL = 3e-3, 1e-4
 """Share of the drive energy at which a cage is at rest (speeds of a twentieth), and of the energy of the
