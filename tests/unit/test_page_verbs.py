@@ -323,10 +323,10 @@ def test_the_headline_names_who_has_another_verdict_with_the_inputs_drawn():
 
 
 def test_the_headline_explains_a_critical_friction_of_zero():
-    """A safety factor of 0.00 stood beside a P(stable) of 0.84, without a word of the land."""
+    """A safety factor of 0.00 stood beside a P(stable) of 0.84, without a word."""
     row = candidate(critical=(0.0, 0.0, 0.0))
     (said,) = deciding(Part({"effects": None, "candidate": None}, {}), [row])
-    assert said.endswith("friction on the land drives them.")
+    assert said.endswith("without friction in the pockets: these do not drive them.")
 
 
 def test_a_critical_friction_that_was_not_found_is_no_friction_of_a_whirl():

@@ -306,7 +306,7 @@ def test_a_study_may_rank_some_materials_and_assume_another_scatter(tmp_path):
     path = study(tmp_path, ranking='materials = ["My compound"]\nfriction_scatter = 0.2')
     asked = read_study(path)
     seen = solve(asked, asked.ranking.candidates[0]).frictions["liquid nitrogen, 440C"]
-    assert seen.standard_error == pytest.approx(0.04, rel=1e-9)
+    assert seen.standard_error == pytest.approx(0.04, rel=1e-9)  # rounding
     assert seen.assumed_scatter
 
 
@@ -356,11 +356,9 @@ def test_the_shipped_study_rubs_at_25_metres_a_second():
     """The pocket of the shipped study: regression, 25.1 m/s and 157 MPa in an impact of the middle kick."""
     solution = solve(read_study("cryogenic-turbopump"))
     found = solution.pocket
-    # 67.4 N: of half the mass of the ring, which is what an impact feels; the whole mass would press with 84
-    # N.
-    assert solution.felt_mass == pytest.approx(
-        0.5 * solution.inertia.mass, rel=1e-12
-    )  # a thin ring; rounding
+    # 67.4 N are of half the mass of the ring, which an impact feels; the whole mass would press with 84 N
+    thin_ring = 0.5 * solution.inertia.mass
+    assert solution.felt_mass == pytest.approx(thin_ring, rel=1e-12)  # rounding
     # regressions to the digits of the numbers
     assert found.slip_speed == pytest.approx(25.124, rel=1e-4)
     assert found.pressure == pytest.approx(157.289e6, rel=1e-4)

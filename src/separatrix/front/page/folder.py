@@ -40,9 +40,12 @@ _HEADER = re.compile(rb"^\s*\[bearing\]|^\s*extends\s*=", re.MULTILINE)
 _BEGINNING = 64 * 1024
 
 TEMPLATES = Environment(
-    loader=PackageLoader("separatrix.front.page"), autoescape=True, undefined=StrictUndefined
+    loader=PackageLoader("separatrix.front.page"),
+    autoescape=True,
+    undefined=StrictUndefined,
+    trim_blocks=True,
+    lstrip_blocks=True,
 )
-TEMPLATES.trim_blocks = TEMPLATES.lstrip_blocks = True
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

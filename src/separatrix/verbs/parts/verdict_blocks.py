@@ -146,7 +146,7 @@ def deciding(answer: Part, rows: Sequence[Part]) -> Iterator[str]:
     if others := [(verdict, name) for verdict, name, mean in drawn if verdict not in (None, mean)]:
         yield f"That is at the means of the uncertain inputs; with them drawn: {by_verdict(others)}."
     if any(row.get("own_critical_friction") == 0.0 and row.get("land_clearance") for row in known):
-        yield "Half the runs whirl even without friction in the pockets: friction on the land drives them."
+        yield "Half the runs whirl even without friction in the pockets: these do not drive them."
     best = known[0]
     both = fill(best, "land clearance {land_clearance}, pocket clearance {pocket_clearance}")
     wide = next((one for one in answer.effects or () if one.name == "wide_land"), None)
