@@ -34,7 +34,7 @@ from separatrix.ground.units import Array
 from separatrix.present.draw import NOTHING, PAGE, STYLE
 from separatrix.present.figure import BLUE, GREEN, GREY, PURPLE, VERMILION
 from separatrix.study.study import StabilitySettings
-from separatrix.verdict.crossing import LADDER, Crossing, cage_at, responses
+from separatrix.verdict.critical_friction import LADDER, Crossing, cage_at, responses
 from separatrix.verdict.long_jobs import Runner
 from separatrix.verdict.stability_curve import critical_friction, linear_limit
 

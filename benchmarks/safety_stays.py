@@ -23,8 +23,8 @@ from unittest import mock
 from separatrix.cage import moving_cage, numbers, settings_for
 from separatrix.chain.solution import Solution, solve
 from separatrix.study.study import Guidance, StabilitySettings
+from separatrix.verdict.critical_friction import CageLimit, cage_limit
 from separatrix.verdict.long_jobs import Runner
-from separatrix.verdict.safety_factor import CageLimit, cage_limit
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "properties"))
 from sane_studies import sane_study

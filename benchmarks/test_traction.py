@@ -4,8 +4,7 @@ import numpy as np
 
 from separatrix.chain.creep import Creep
 from separatrix.chain.hertz import contact_ellipse
-from separatrix.chain.master_curve import film_tables
-from separatrix.chain.strip import solve_strip
+from separatrix.chain.strip import film_tables, solve_strip
 from separatrix.chain.traction_curve import traction_curve, traction_slope
 
 ELLIPSE = contact_ellipse(500.0, 200.0, 20.0, 113e9)

@@ -19,7 +19,7 @@ _PUBLIC = {
     "chain.equilibrium": "Equilibrium contact",
     "chain.hertz": "ContactEllipse contact_ellipse contact_modulus ellipse_of_axes "
     "ellipse_of_curvatures race_curvatures",
-    "chain.ball_traction": "BallTraction",
+    "chain.race_traction": "BallTraction",
     "chain.ball_mobility": "LinearMobility Mobility SlipLaw",
     "chain.impact_restitution": "LubricationCurve Restitution ball_pocket_stiffness damping_ratio "
     "lubrication_curve restitution_factor",

@@ -10,7 +10,7 @@ from cages import AT_REST, TURNING, followed, gripped, linear_roots
 from separatrix import MovingCage, linear_critical_friction, linear_whirl_frequency, run_ensemble
 from separatrix.cage import numbers
 from separatrix.cage.closed_forms import drift_rate_law, whirl_rate
-from separatrix.chain.ball_traction import BallTraction
+from separatrix.chain.race_traction import BallTraction
 from separatrix.study.study import MotionModel, StabilitySettings
 
 M, K, Z, R = AT_REST.mass, AT_REST.ball_cage_stiffness, AT_REST.ball_count, AT_REST.pitch_radius

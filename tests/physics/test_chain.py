@@ -10,7 +10,7 @@ from scipy.optimize import brentq
 
 from separatrix import KinematicModel, Kinematics, StabilitySettings, lubrication_curve, read_study, solve
 from separatrix.cage.course import follow_start
-from separatrix.cage.disturbance import Starts, free_leads, random_starts
+from separatrix.cage.disturbance import Starts, random_starts
 from separatrix.cage.moving_cage import moving_cage, turned_forward
 from separatrix.cage.numbers import waves_of
 from separatrix.chain.contacts import waves_around
@@ -91,7 +91,7 @@ def test_free_balls_lead_by_the_integral_of_their_speed():
     """Omega times the slope of the lead over the azimuth is the speed beyond the mean; to its difference."""
     cage = replace(moving_cage(solve(STUDY), 0.0), orbital_cosines=(0.3, 0.1), orbital_sines=(-0.1, 0.2))
     azimuth, step = np.linspace(0.0, 6.0, 7), 1e-5
-    slope = (free_leads(cage, azimuth + step) - free_leads(cage, azimuth - step)) / (2.0 * step)
+    slope = (cage.free_leads(azimuth + step) - cage.free_leads(azimuth - step)) / (2.0 * step)
     # rounding of a difference of 1e-5 rad: 1e-16 of the lead over the step
     assert cage.cage_speed * slope == pytest.approx(waves_at(cage, azimuth), rel=1e-6, abs=1e-8)
 

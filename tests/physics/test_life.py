@@ -14,7 +14,7 @@ from separatrix.chain import slip_work
 from separatrix.chain.contacts import bearing_state
 from separatrix.chain.slip_work import TrackWork, track_work
 from separatrix.study.study import Film, KinematicModel, Race, WearRates
-from separatrix.verdict.crossing import PLACES, Count, steepness
+from separatrix.verdict.critical_friction import PLACES, Count, steepness
 from separatrix.verdict.life_table import (
     Node,
     _accelerated,

@@ -14,16 +14,18 @@ from separatrix.ground.document import Part
 from separatrix.present.quantity_text import cell, estimate, show
 from separatrix.study.study import BallModel, CageModel, MotionModel, PocketShape, StabilitySettings
 from separatrix.verdict.beyond_models import Pocket
-from separatrix.verdict.crossing import Count, Response, Side
-from separatrix.verdict.ranking import Knot, Limit, _knots, _limits
-from separatrix.verdict.safety_factor import (
+from separatrix.verdict.critical_friction import (
     CageLimit,
+    Count,
+    Response,
     SafetyFactor,
+    Side,
     cage_limit,
     hand_estimate,
     safety_factor,
     spread,
 )
+from separatrix.verdict.ranking import Knot, Limit, _knots, _limits
 from separatrix.verdict.stability_curve import CriticalFriction, critical_friction
 
 SHIPPED = separatrix.read_study("cryogenic-turbopump")

@@ -15,7 +15,7 @@ from separatrix import Runner, critical_friction, restitution_threshold, stabili
 from separatrix.cage import linear_critical_friction, run_ensemble
 from separatrix.cage.closed_forms import drift_rate_law
 from separatrix.study.study import Guidance, StabilitySettings
-from separatrix.verdict.crossing import cage_at
+from separatrix.verdict.critical_friction import cage_at
 from separatrix.verdict.stability_curve import curve_of_points, threshold_factors
 
 SETTINGS = StabilitySettings(kicks=(0.5,), reference_kick=0.5, runs=32, duration=0.1, seed=3)

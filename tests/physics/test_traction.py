@@ -12,8 +12,15 @@ from hypothesis import strategies as st
 
 from separatrix import Creep, contact_ellipse, film_compliance, shear_field, traction_curve, traction_slope
 from separatrix.chain import strip as strip_module
-from separatrix.chain.master_curve import film_tables, master_traction, matched_knots, nested_sticks
-from separatrix.chain.strip import node_pressure, solve_strip, strip_influence
+from separatrix.chain.strip import (
+    film_tables,
+    master_traction,
+    matched_knots,
+    nested_sticks,
+    node_pressure,
+    solve_strip,
+    strip_influence,
+)
 from separatrix.chain.traction_curve import GAUSS_NODES, GAUSS_WEIGHTS, LEVELS, panel_edges, reach
 from separatrix.ground.errors import ConvergenceError, InputError
 from separatrix.study.study import Film, Material

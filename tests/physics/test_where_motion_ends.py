@@ -11,7 +11,7 @@ from separatrix.cage import Cause, Ensemble, MovingCage, RunOutcome, moving_cage
 from separatrix.cage.closed_forms import drive_energy
 from separatrix.cage.outcome import LIMITS, end_of_motion
 from separatrix.cage.rows import LOOK_COLUMNS, of
-from separatrix.verdict.crossing import cage_at
+from separatrix.verdict.critical_friction import cage_at
 from separatrix.verdict.reasons import CageMotion, largest_room
 
 RUNS, DURATION = 8, 0.1

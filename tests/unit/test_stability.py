@@ -13,7 +13,16 @@ from separatrix.chain.impact_restitution import damping_ratio, restitution_facto
 from separatrix.study.study import BallModel, StabilitySettings
 from separatrix.verdict import long_jobs as runner
 from separatrix.verdict import stability_curve
-from separatrix.verdict.crossing import LADDER, Count, Crossing, Response, Side, cage_at, cell_of, responses
+from separatrix.verdict.critical_friction import (
+    LADDER,
+    Count,
+    Crossing,
+    Response,
+    Side,
+    cage_at,
+    cell_of,
+    responses,
+)
 from separatrix.verdict.stability_curve import (
     FACTORS,
     CriticalFriction,

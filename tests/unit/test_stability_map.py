@@ -14,7 +14,7 @@ from rich_studies import PLANE, SPACE
 from separatrix import Arrangement, InputError, Interrupted, MotionModel, Runner, read_study, solve
 from separatrix.cage import RunOutcome, moving_cage, run_ensemble
 from separatrix.front import main
-from separatrix.verdict.crossing import cage_at
+from separatrix.verdict.critical_friction import cage_at
 from separatrix.verdict.judgement import is_calm, judge
 from separatrix.verdict.ledger import NAME, Ledger
 from separatrix.verdict.parameter_axes import MapAxis, parameters, read_axis, value_in, varied

@@ -14,7 +14,7 @@ from scipy import stats
 
 from separatrix import BallModel, Cause, Ensemble, Guidance, MotionModel, PocketShape, RunOutcome
 from separatrix.cage.closed_forms import drive_energy
-from separatrix.chain.ball_traction import BallTraction, FreeBall, SlipField
+from separatrix.chain.race_traction import BallTraction, FreeBall, SlipField
 from separatrix.verdict import judgement
 from separatrix.verdict.judgement import ENDS, KickCount, Verdict, judge, wilson_interval
 from separatrix.verdict.ranking_records import meet, ranks

@@ -29,7 +29,7 @@ from separatrix.study.pocket_shape import PocketShape, end_half_play
 
 if TYPE_CHECKING:
     from separatrix.cage.moving_cage import MovingCage
-    from separatrix.chain.ball_traction import BallTraction
+    from separatrix.chain.race_traction import BallTraction
 
 LOWEST_RESTITUTION = 1e-4
 REAL = 1e-9

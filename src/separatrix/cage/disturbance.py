@@ -92,7 +92,7 @@ def random_starts(cage: MovingCage, settings: StabilitySettings, first_run: int,
     drawn = np.stack([random_start(settings.seed, first_run + i, cage.ball_count) for i in range(runs)])
     ways = np.array([tilt_start(settings.seed, first_run + i) for i in range(runs)])
     more = -0.5 * cage.ball_diameter_scatter * drawn[:, 2]
-    lead = settings.ball_scatter * (half + more) * drawn[:, 1] + free_leads(cage, angles)
+    lead = settings.ball_scatter * (half + more) * drawn[:, 1] + cage.free_leads(angles)
     if cage.balls_at_walls:
         lead = np.copysign(half + more, -more * cage.orbit_by_diameter)
     lead = np.clip(lead - cage.pocket_position_scatter * drawn[:, 3], -half - more, half + more)
@@ -104,14 +104,6 @@ def random_starts(cage: MovingCage, settings: StabilitySettings, first_run: int,
         more=more,
         angle=angles + cage.pocket_spacing_scatter * pitch * drawn[:, 4],
     )
-
-
-def free_leads(cage: MovingCage, angles: Array) -> Array:
-    """Lead of each ball in its free orbit at the start, which a radial load makes uneven [m]."""
-    lead = np.zeros(angles.size)
-    for h, (a, b) in enumerate(zip(cage.orbital_cosines, cage.orbital_sines, strict=True), start=1):
-        lead += (a * np.sin(h * angles) - b * np.cos(h * angles)) / (h * cage.cage_speed)
-    return lead
 
 
 @lru_cache(maxsize=512)

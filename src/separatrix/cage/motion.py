@@ -1,7 +1,11 @@
-r"""The equations of motion: rates of the cage and of every ball, from the forces between them.
+r"""The equations of motion: rates of the cage and of every ball from the forces between them, and a step.
 
 A runs' state is one column of numbers (`rows`); these functions take sixteen runs side by side. The plane is
 space with tilt and axial motion held; the ball is a damper, has one state, or is free (`ball`).
+
+A step is classical Runge-Kutta. The speed of a ball of one state is stiff in a slow bearing: there
+:math:`C_f/m_e` is far above every other rate. Its linear part is taken exactly (exponential time differencing
+of order 4, Cox and Matthews 2002), which is classical Runge-Kutta where that rate is small.
 """
 
 from __future__ import annotations
@@ -113,3 +117,45 @@ def ball_rates(s, of_balls, rates_of, a, p, places, ball, space, level):
                 )
                 pivoted = held * (ti + to) - lever * nz * er
                 db[speed + 3 * LANES + l] = pivoted * per_j - (om + w) * o_r + om * base_r
+
+
+@inlined
+def stage_end(stage, s, t, d, q, h, sixth):
+    """State `t` of the next stage, from the rates `d` of this one; after the last, `s` and `t`.
+
+    `h`: length of the step, as often as there are numbers in the state, so that one loop does; `sixth`: 1/6
+    in the precision of the state.
+    """
+    if stage < 3:
+        keep, gain = ZERO if stage == 0 else ONE, ONE if stage == 0 else TWO
+        ahead = ONE if stage == 2 else HALF
+        for e in range(s.size):
+            q[e] = keep * q[e] + gain * d[e]
+            t[e] = s[e] + ahead * h[e] * d[e]
+    else:
+        for e in range(s.size):
+            s[e] += sixth * h[e] * (q[e] + d[e])
+            t[e] = s[e]
+
+
+@inlined
+def held_stage_end(stage, s, t, d, first, middle, held):
+    """The same where balls have one state, whose decay is exact; `held`: gains of every number of the state.
+
+    A number that does not decay takes the step of `stage_end`.
+    """
+    half, gain, whole, by_first, by_middle, by_last = held[0], held[1], held[2], held[3], held[4], held[5]
+    for e in range(s.size):
+        rate = d[e]
+        if stage == 0:
+            first[e] = rate
+            t[e] = half[e] * s[e] + gain[e] * rate
+        elif stage == 1:
+            middle[e] = rate
+            t[e] = half[e] * s[e] + gain[e] * rate
+        elif stage == 2:
+            middle[e] += rate
+            t[e] = half[e] * (half[e] * s[e] + gain[e] * first[e]) + gain[e] * (TWO * rate - first[e])
+        else:
+            s[e] = whole[e] * s[e] + (by_first[e] * first[e] + by_middle[e] * middle[e] + by_last[e] * rate)
+            t[e] = s[e]

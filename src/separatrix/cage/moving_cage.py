@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING, Annotated, ClassVar
 
 import numpy as np
 
-from separatrix.cage.disturbance import free_leads
-from separatrix.chain.ball_traction import BallTraction, FreeBall
 from separatrix.chain.impact_restitution import hertz_coefficient_for
+from separatrix.chain.race_traction import BallTraction, FreeBall
 from separatrix.ground.errors import InputError
 from separatrix.ground.schema import (
     Fault,
@@ -25,6 +24,7 @@ from separatrix.ground.schema import (
     record,
 )
 from separatrix.ground.units import (
+    Array,
     Kilogram,
     KilogramMetre,
     KilogramMetre2,
@@ -189,7 +189,7 @@ class MovingCage:
     @property
     def lead_amplitude(self) -> Metre:
         """Largest lead or lag of a free ball, from its uneven orbital speed [m]."""
-        return float(np.abs(free_leads(self, np.linspace(0.0, 2.0 * math.pi, 361))).max())
+        return float(np.abs(self.free_leads(np.linspace(0.0, 2.0 * math.pi, 361))).max())
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -239,6 +239,13 @@ class MovingCage:
         """Speed of the ring that carries the land [rad/s]; the cage's own without a land."""
         speeds = {Guidance.INNER: self.inner_speed, Guidance.OUTER: self.outer_speed}
         return speeds.get(self.guidance, self.cage_speed)
+
+    def free_leads(self, angles: Array) -> Array:
+        """Lead of each ball at these angles in its free orbit, which a radial load makes uneven [m]."""
+        lead = np.zeros(angles.size)
+        for h, (a, b) in enumerate(zip(self.orbital_cosines, self.orbital_sines, strict=True), start=1):
+            lead += (a * np.sin(h * angles) - b * np.cos(h * angles)) / (h * self.cage_speed)
+        return lead
 
 
 def turned_forward(cage: MovingCage) -> MovingCage:

@@ -12,7 +12,7 @@ from functools import cache
 import numpy as np
 
 from separatrix.cage.frame import place
-from separatrix.cage.motion import rates
+from separatrix.cage.motion import held_stage_end, rates, stage_end
 from separatrix.cage.outcome import (
     BY_WALL,
     GROWS,
@@ -26,7 +26,6 @@ from separatrix.cage.outcome import (
 )
 from separatrix.cage.pocket_force import pocket_depth
 from separatrix.cage.rows import *
-from separatrix.cage.step import held_stage_end, stage_end
 from separatrix.ground.compiled import inlined, kernel, part
 
 OUTCOME, CAUSE, JUDGED, OPEN, DONE, LEFT_AT, FIRST_EXTREME = range(7)

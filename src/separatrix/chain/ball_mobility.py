@@ -18,7 +18,6 @@ from typing import Annotated, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from separatrix.chain.ball_traction import BallTraction, FreeBall, SlipField
 from separatrix.chain.contacts import RaceContact, Rolling, of_both_races
 from separatrix.chain.creep import Creep
 from separatrix.chain.grooved_ball import (
@@ -30,7 +29,7 @@ from separatrix.chain.grooved_ball import (
     touches,
     turning_loads,
 )
-from separatrix.chain.race_traction import SLOPE_ALONE, contact_traction
+from separatrix.chain.race_traction import SLOPE_ALONE, BallTraction, FreeBall, SlipField, contact_traction
 from separatrix.chain.slip_friction import chebyshev_nodes
 from separatrix.ground.compiled import kernel
 from separatrix.ground.errors import ConvergenceError, InputError

@@ -13,7 +13,6 @@ from functools import cached_property
 import numpy as np
 
 from separatrix.chain.ball_mobility import Mobility, free_ball, mobility, shares_of_balls
-from separatrix.chain.ball_traction import FreeBall
 from separatrix.chain.clearances import Clearances, as_it_runs, running_clearances
 from separatrix.chain.contacts import (
     BearingState,
@@ -44,6 +43,7 @@ from separatrix.chain.pocket_friction import (
     pocket_speed,
 )
 from separatrix.chain.preloaded_pair import PairLoads, pair_loads, with_axial_load
+from separatrix.chain.race_traction import FreeBall
 from separatrix.ground.errors import InputError
 from separatrix.ground.units import Kilogram, MetrePerSecond, NewtonPerMetre, PerSecond, format_quantity
 from separatrix.study.ball_bearing import NAMELESS

@@ -20,8 +20,7 @@ from numpy.typing import ArrayLike
 from separatrix.chain.creep import Creep
 from separatrix.chain.film_compliance import Profile, pieces_across
 from separatrix.chain.hertz import ContactEllipse
-from separatrix.chain.master_curve import MasterTable, film_tables, master_traction
-from separatrix.chain.strip import solve_strip
+from separatrix.chain.strip import MasterTable, film_tables, master_traction, solve_strip
 from separatrix.ground.compiled import kernel, part
 from separatrix.ground.errors import InputError
 from separatrix.ground.units import Array, Metre, Ratio, format_quantity

@@ -62,7 +62,7 @@ def compute(study: Study, options: Options) -> SimulationAnswer:
     from separatrix.verbs.cage_answers import SimulationAnswer
     from separatrix.verbs.parts import cage_of_study as of
     from separatrix.verdict.beyond_models import Moved, beyond_motion
-    from separatrix.verdict.crossing import cage_at
+    from separatrix.verdict.critical_friction import cage_at
     from separatrix.verdict.judgement import transmitted_force
     from separatrix.verdict.parameter_axes import plain_number
     from separatrix.verdict.reasons import force_limit, outcome_sentence

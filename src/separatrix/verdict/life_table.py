@@ -23,7 +23,7 @@ from separatrix.ground.units import Array, Hertz, Metre, RadianPerSecond, Ratio,
 from separatrix.study.candidates import reference_candidate
 from separatrix.study.study import BallModel, Candidate, Race, StabilitySettings, Study, WearRates
 from separatrix.study.wear_rates import WearRate, library_rate
-from separatrix.verdict.crossing import SEARCHED_FRICTION
+from separatrix.verdict.critical_friction import SEARCHED_FRICTION, cage_limit
 from separatrix.verdict.draws import (
     Case,
     frictions_to_draw,
@@ -34,7 +34,6 @@ from separatrix.verdict.draws import (
 from separatrix.verdict.judgement import is_calm
 from separatrix.verdict.long_jobs import Interrupted, Load, Runner
 from separatrix.verdict.parameter_axes import TIME_SHARE, varied
-from separatrix.verdict.safety_factor import cage_limit
 from separatrix.verdict.stability_curve import expected_load
 from separatrix.verdict.swept_cases import time_shares
 from separatrix.verdict.wear_life import (

@@ -32,6 +32,12 @@ from separatrix.verdict.beyond_models import (
     pocket_of,
     reason,
 )
+from separatrix.verdict.critical_friction import (
+    CageLimit,
+    cage_limit,
+    safety_factor,
+    spread,
+)
 from separatrix.verdict.draws import Case, DrawnBearings, drawn_bearings
 from separatrix.verdict.effects import Change, Effect, effects_on
 from separatrix.verdict.judgement import judge_solution, transmitted_force
@@ -50,12 +56,6 @@ from separatrix.verdict.ranking_records import (
     ranks,
     safety_interval,
     same_rank,
-)
-from separatrix.verdict.safety_factor import (
-    CageLimit,
-    cage_limit,
-    safety_factor,
-    spread,
 )
 from separatrix.verdict.stability_curve import (
     CriticalFriction,

@@ -14,7 +14,7 @@ from separatrix.chain.impact_restitution import damping_ratio
 from separatrix.chain.impact_restitution import restitution_factor as nominal
 from separatrix.ground.units import MetrePerSecond, PerSecond, Ratio, Rows, Second
 from separatrix.study.study import StabilitySettings
-from separatrix.verdict.crossing import (
+from separatrix.verdict.critical_friction import (
     BATCH,
     END_RUNS,
     SEARCHED_FRICTION,

@@ -23,7 +23,7 @@ from separatrix.ground.errors import ConvergenceError, InputError
 from separatrix.ground.units import Metre, MetrePerSecond, Newton, PerSecond, Ratio, Rows, Second
 from separatrix.study.candidates import require_friction
 from separatrix.study.study import StabilitySettings, Study
-from separatrix.verdict.crossing import cage_at
+from separatrix.verdict.critical_friction import cage_at
 from separatrix.verdict.judgement import Verdict, decide, is_calm, is_clear, wilson_interval
 from separatrix.verdict.long_jobs import Runner, joined, scattered
 from separatrix.verdict.parameter_axes import FRICTION, KICK, RESTITUTION, MapAxis, value_in, varied

@@ -27,6 +27,7 @@ from separatrix.ground.units import (
 )
 from separatrix.study.candidates import require_friction
 from separatrix.study.study import Operation, Study
+from separatrix.verdict.critical_friction import cage_limit, safety_factor
 from separatrix.verdict.judgement import Judgement, judge_solution
 from separatrix.verdict.long_jobs import Runner, scattered
 from separatrix.verdict.parameter_axes import (
@@ -41,7 +42,6 @@ from separatrix.verdict.parameter_axes import (
 )
 from separatrix.verdict.ranking_records import MeanFriction, measured
 from separatrix.verdict.reasons import CageMotion
-from separatrix.verdict.safety_factor import cage_limit, safety_factor
 from separatrix.verdict.stability_curve import own_threshold
 
 ROUNDING = 1e-9  # share of their value by which cases that are alike may differ
