@@ -55,9 +55,9 @@ def random_pieces(state: Solution, runs: int, seed: int) -> list[Piece]:
 
 def longer(piece: Piece, duration: float) -> Piece:
     """The same run, followed as long as that is, unless it runs away."""
-    numbers = numbers_of(piece.cage, piece.kick, duration)
+    numbers = numbers_of(piece.cage, piece.kick, duration, whole=True)
     limits = numbers.limits.copy()
-    limits[outcome.FROM], limits[outcome.GROWS] = limits[outcome.MOST], 1e4 * limits[outcome.GROWS]
+    limits[outcome.GROWS] *= 1e4
     return piece._replace(numbers=numbers._replace(limits=limits))
 
 

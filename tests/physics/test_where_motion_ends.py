@@ -1,17 +1,24 @@
 """The outcome of a run is where its motion ends: kicks, loads, land friction, states beyond all range."""
 
 from dataclasses import replace
-from functools import lru_cache
+from functools import lru_cache, partial
+from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
 import pytest
+from sane_studies import sane_study
 
 from separatrix import Judgement, StabilitySettings, Verdict, judge, read_study, solve
 from separatrix.cage import Cause, Ensemble, MovingCage, RunOutcome, moving_cage, run_ensemble
 from separatrix.cage.closed_forms import drive_energy
+from separatrix.cage.disturbance import settings_for
 from separatrix.cage.outcome import LIMITS, end_of_motion
 from separatrix.cage.rows import LOOK_COLUMNS, of
 from separatrix.verdict.critical_friction import cage_at
+from separatrix.verdict.judgement import judge_solution
+from separatrix.verdict.long_jobs import Runner
+from separatrix.verdict.long_look import LongLook, long_look, seen_for_longer
 from separatrix.verdict.reasons import CageMotion, largest_room
 
 RUNS, DURATION = 8, 0.1
@@ -116,6 +123,41 @@ def test_a_whirl_weaker_than_the_loads_rolls_whatever_the_duration():
     longer = run_ensemble(cage, replace(settings, duration=0.6), kicks=(0.9,), runs=RUNS)
     # so near its threshold a whirl may end by chance
     assert np.count_nonzero(longer.outcome != found.outcome) <= 1
+
+
+def seen_on_a_land(land_friction: float) -> tuple[Judgement, LongLook | None]:
+    """Judgement and long look of a gyro's cage of 32 mg that rubs on its inner land."""
+    with TemporaryDirectory() as folder:
+        study = sane_study(1, Path(folder))
+    state = solve(replace(study, cage=replace(study.cage, land_friction=land_friction)))
+    settings = replace(settings_for(study.stability, moving_cage(state, 0.05)), runs=16, duration=0.1)
+    judged = judge_solution(state, 0.05, partial(Runner().whole_ensemble, settings=settings))
+    return judged, long_look(state, 0.05, settings, Runner())
+
+
+def test_a_land_that_takes_over_a_calm_cage_keeps_it_from_stable():
+    """At a land friction of 0.4 15 of 16 runs settle within 0.1 s, and most whirl round the land within 1 s."""
+    judged, look = seen_on_a_land(0.4)
+    assert look is not None
+    assert (judged.verdict, look.runs) == (Verdict.STABLE, 16)
+    assert look.duration == pytest.approx(1.0, rel=0.01)  # to the end of a look, of 2 ms
+    assert look.on_land > 8  # 12
+    assert 0.5 < look.largest_land_force < 5.0  # N, 1.6; the weight is 0.3 mN
+    longer = seen_for_longer(judged, look)
+    assert longer.verdict is Verdict.UNDECIDED
+    assert f"{look.on_land} of 16 runs end whirling round the land" in longer.reason
+    unstable = replace(judged, verdict=Verdict.UNSTABLE)
+    assert seen_for_longer(unstable, look) == unstable
+    assert seen_for_longer(judged, replace(look, on_land=1)) == judged  # less than a tenth
+
+
+def test_a_land_of_little_friction_leaves_a_calm_cage_alone():
+    """At 0.05 none whirls; without friction, as without a land, nothing could drive it."""
+    judged, look = seen_on_a_land(0.05)
+    assert look is not None
+    assert (look.on_land, look.largest_land_force) == (0, 0.0)
+    assert seen_for_longer(judged, look) == judged
+    assert seen_on_a_land(0.0)[1] is None
 
 
 def test_a_state_that_leaves_the_range_of_numbers_is_not_settled():

@@ -149,6 +149,7 @@ class Runs(NamedTuple):
     settings: StabilitySettings
     first_run: int
     runs: int
+    whole: bool = False  # whether each is followed for the whole duration, unless it runs away
 
 
 def pieces_of(asked: Sequence[Runs], kicks: Sequence[MetrePerSecond] | Array) -> list[Piece]:
@@ -163,7 +164,7 @@ def piece_of(asked: Runs, kick: MetrePerSecond) -> Piece:
     """Runs of a cage that turns forward, from one disturbance, by their numbers."""
     cage, settings = asked.cage, asked.settings
     starts = random_starts(cage, settings, asked.first_run, asked.runs)
-    numbers = numbers_of(cage, kick, settings.duration)
+    numbers = numbers_of(cage, kick, settings.duration, whole=asked.whole)
     return Piece(cage, kick, numbers, start_states(cage, kick, starts), ball_places(cage, starts))
 
 

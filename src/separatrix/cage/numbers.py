@@ -124,12 +124,18 @@ def waves_of(cage: MovingCage) -> Array:
 
 
 def numbers_of(
-    cage: MovingCage, kick: MetrePerSecond, duration: Second, *, least: Second = 0.0, refine: int = 1
+    cage: MovingCage,
+    kick: MetrePerSecond,
+    duration: Second,
+    *,
+    least: Second = 0.0,
+    refine: int = 1,
+    whole: bool = False,
 ) -> Numbers:
     """Rows of a run of a cage that turns forward, from a disturbance [m/s].
 
     `least`: time to which it is followed even where its end is plain before; `refine`: steps in one of the
-    usual length.
+    usual length. `whole`: no end but a run-away is plain before `duration` is over.
     """
     look = look_time(cage)
     fewest = look / step_length(cage, kick)
@@ -148,7 +154,9 @@ def numbers_of(
         harmonics=len(waves),
         steps=steps,
     )
-    return Numbers(kind, n, strips, waves.ravel(), _limits(cage, kick, duration, least, look))
+    limits = _limits(cage, kick, duration, least, look)
+    limits[outcome.FROM] = limits[outcome.MOST] if whole else limits[outcome.FROM]
+    return Numbers(kind, n, strips, waves.ravel(), limits)
 
 
 def _of_cage(cage: MovingCage, kick: MetrePerSecond, step: Second) -> dict[int, float]:

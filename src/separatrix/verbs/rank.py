@@ -203,7 +203,15 @@ def holds_for(answer: Part) -> list[tuple[str, Any]]:
     film = ""
     if answer.restitution_factor < answer.solid_lubrication_limit:
         film = q.fill(answer, " The contact model predicts {restitution_factor} for this film.")
-    return [("Unrepeated tests", scatter), ("The paper's bound", f"{answer.paper_statement}{film}")]
+    bound = f"{answer.paper_statement}{film}"
+    return [("Unrepeated tests", scatter), ("The paper's bound", bound), *long_look(answer)]
+
+
+def long_look(answer: Part) -> list[tuple[str, Any]]:
+    """Return what was seen of a calm cage on its land long after it settled; nothing without a land."""
+    look = answer.get("long_look")
+    words = "{runs} runs from {kick} with a friction of {friction}, {duration} each: {on_land} end whirling "
+    return [("A long look", q.fill(look, f"{words}round the land"))] if look else []
 
 
 # Pictures.

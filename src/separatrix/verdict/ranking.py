@@ -11,6 +11,7 @@ from typing import Any, NamedTuple, TypeVar
 
 from separatrix.cage.disturbance import settings_for
 from separatrix.cage.moving_cage import MovingCage, moving_cage
+from separatrix.cage.rows import LANES
 from separatrix.chain.impact_restitution import SOLID_LUBRICATION_LIMIT
 from separatrix.chain.solution import Solution, solve
 from separatrix.ground.units import Ratio
@@ -42,6 +43,7 @@ from separatrix.verdict.draws import Case, DrawnBearings, drawn_bearings
 from separatrix.verdict.effects import Change, Effect, effects_on
 from separatrix.verdict.judgement import judge_solution, transmitted_force
 from separatrix.verdict.long_jobs import Load, Runner, scattered
+from separatrix.verdict.long_look import long_look, seen_for_longer
 from separatrix.verdict.ranking_records import (
     MeanFriction,
     NotFinished,
@@ -93,7 +95,15 @@ class Limit:
     effect: str = ""
 
 
-Piece = Asked | Knot | Limit | Case
+@dataclass(frozen=True, slots=True)
+class Longer:
+    """A long look at the cage of least friction."""
+
+    pocket: Pocket
+    friction: Ratio
+
+
+Piece = Asked | Knot | Limit | Longer | Case
 """What is computed in one go, a case for a verdict on drawn bearings."""
 
 PieceOfPocket = TypeVar("PieceOfPocket", Knot, Limit)
@@ -121,6 +131,7 @@ class _Question:
     drawn: DrawnBearings | None
     keys: Sequence[Asked]  # of all verdicts by the study's model
     beside: Sequence[Asked]  # of those by the paper's, in the bearing's own environment
+    longer: Longer | None  # in the bearing's own environment; None in the paper's model
     runner: Runner
 
     @property
@@ -132,7 +143,8 @@ class _Question:
         cases = scattered(self.drawn.friction) if self.drawn else []
         kinds = (_limits(self, {}), _knots(self, {}), scattered(self.keys), scattered(self.beside), cases)
         in_turn = itertools.chain.from_iterable(itertools.zip_longest(*kinds))
-        return [Knot(self.reference, None), *(piece for piece in in_turn if piece is not None)]
+        first = (self.longer, Knot(self.reference, None), *in_turn)
+        return [piece for piece in first if piece is not None]
 
 
 def rank(study: Study, *, runner: Runner | None = None) -> Ranking:
@@ -186,6 +198,7 @@ def rank(study: Study, *, runner: Runner | None = None) -> Ranking:
             ball_model=reference.design.ball_model,
             motion_model=reference.design.motion_model,
             effects=tuple(_effects(question, found)),
+            long_look=found.get(question.longer) if question.longer else None,
             capacity=transmitted_force(reference),
             notes=_notes(study, asked, question, found, ranked[environment]),
             complete={*pieces, *_between(question, found)} <= {*found},
@@ -234,7 +247,8 @@ def _question(
     reference = pockets[reference_candidate(study, asked).name]
     every = {(pockets[n], f.mean) for table in tables for n, f in table.items() if f is not None}
     keys = [Asked(*each) for each in sorted(every)]
-    own = {Asked(pockets[n], f.mean, True) for n, f in tables[0].items() if f is not None}
+    own = sorted({Asked(pockets[n], f.mean, True) for n, f in tables[0].items() if f is not None})
+    least = min(own, key=lambda one: one.friction) if own and not is_paper else None
     paper_cages = {pocket: moving_cage(one, 0.0) for pocket, one in paper.items()}
     drawn = drawn_bearings(study, study.stability.runs) if study.distributions else None
     spreads = {}
@@ -255,7 +269,8 @@ def _question(
         effects={} if is_paper else dict(effects_on(cages[reference], moving_cage(cages[reference], 0.0))),
         drawn=drawn,
         keys=keys,
-        beside=[] if is_paper else sorted(own),
+        beside=[] if is_paper else own,
+        longer=least and Longer(least.pocket, least.friction),
         runner=runner,
     )
 
@@ -318,6 +333,8 @@ def _load(question: _Question, piece: Piece) -> Load:
     if isinstance(piece, Knot):
         return expected_load(question.settings, band=piece.restitution_factor is None)
     kicks = len(question.settings.kicks)
+    if isinstance(piece, Longer):
+        return Load(LANES, dear=20.0)
     if isinstance(piece, Limit):
         return Load(kicks * expected_load(question.settings, band=False).runs, dear=6.0)
     return Load(kicks * question.settings.runs)
@@ -339,6 +356,8 @@ def _computed(question: _Question, piece: Piece) -> object:
         few = replace(settings, runs=max(1, settings.runs // 2))
         change = question.effects[piece.effect].values
         return cage_limit(solution, few, runner, highest=highest, change=change)
+    if isinstance(piece, Longer):
+        return long_look(question.cages[piece.pocket], piece.friction, settings, runner)
     solved = question.paper if piece.is_paper else question.cages
     run = partial(runner.whole_ensemble, settings=settings)
     return judge_solution(solved[piece.pocket], piece.friction, run)
@@ -408,6 +427,7 @@ def _row(
         return NotFinished(**values, reason=NOT_FINISHED)
     if broken := not_finite(judgement):
         return NotFinished(**values, reason=broken)
+    judgement = seen_for_longer(judgement, found.get(question.longer) if question.longer else None)
     values["judgement"] = judgement
     values["over_inputs"] = found.get(Case(name)) if environment == question.environment else None
     threshold = _threshold(question, found, pocket, friction)

@@ -21,6 +21,7 @@ from separatrix.ground.units import (
 from separatrix.study.study import BallModel, Friction, MotionModel
 from separatrix.verdict.effects import Effect
 from separatrix.verdict.judgement import Judgement, Verdict
+from separatrix.verdict.long_look import LongLook
 from separatrix.verdict.stability_curve import StabilityCurve
 
 
@@ -128,6 +129,7 @@ class Ranking:
     motion_model: MotionModel  # plane or space
     effects: Annotated[tuple[Effect, ...], Rows("effect", "effect_", label="name")]
     """What else moves the critical friction of the cage of `candidate`, as its inputs allow."""
+    long_look: LongLook | None  # at a calm cage on its land; null without a land, and in the paper's model
     capacity: Newton  # most that the races can transmit to the most loaded ball
     notes: tuple[str, ...] = ()  # where the motion leaves the range of the model, a sentence each
     complete: bool  # false if an interrupt left something out

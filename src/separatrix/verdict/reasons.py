@@ -237,6 +237,18 @@ def kept_moving(cage: MovingCage, ensemble: Ensemble) -> str:
     )
 
 
+def taken_by_land(cage: MovingCage, ensemble: Ensemble, taken: Mask) -> str:
+    """Return how many runs that were followed for long whirl round the land in the end, and how hard."""
+    time, runs = _three(ensemble.followed.max()), f"{int(taken.sum())} of {taken.size} runs"
+    if not taken.any():
+        return f"Followed for {time} s, {runs} whirl round the land."
+    return (
+        f"The cage settles, but followed for {time} s, {runs} end whirling round the land: "
+        f"{_lively(ensemble, taken)}. Friction there, {cage.land_friction:g}, and not in the pockets, drives "
+        "that; check [cage] land_friction."
+    )
+
+
 def few_kept(cage: MovingCage, ensemble: Ensemble) -> str:
     """Return the same for the few runs of a stable cage; empty if there is none."""
     kept = kept_by_land(ensemble)
@@ -252,7 +264,7 @@ def few_kept(cage: MovingCage, ensemble: Ensemble) -> str:
 def _lively(ensemble: Ensemble, kept: Mask) -> str:
     energy, power = (median(values[kept]) for values in (ensemble.end_energy, ensemble.land_power))
     force = float(ensemble.largest_land_force[kept].max())
-    return f"{_three(1e3 * energy)} mJ, fed {_watt(power)}, up to {_three(force)} N on the land"
+    return f"{format_quantity(energy, 'J', 3)}, fed {_watt(power)}, up to {_three(force)} N on the land"
 
 
 def out_of_pockets(cage: MovingCage, ensemble: Ensemble, left: Mask) -> str:

@@ -124,10 +124,15 @@ def _margin(first: Sequence[Part]) -> str:
     )
 
 
+WITHOUT_FRICTION = "half the runs whirl even without friction in the pockets, which do not drive them"
+
+
 def _safety(first: Sequence[Part]) -> str:
     """Return the safety factors of the candidates that rank first, and what they are made of."""
     criticals, frictions = span(first, "own_critical_friction"), span(first, "friction")
-    lowest = min(first, key=lambda row: row.get("safety_factor_low") or inf)
+    lowest = min(first, key=lambda row: row.get("safety_factor_low", inf))
+    if lowest.get("own_critical_friction") == 0.0:
+        return f"Safety factor 0: {WITHOUT_FRICTION}; they have {frictions}."
     factor = show(lowest, "safety_factor")
     at = "at least " if len(first) > 1 and not factor.startswith(">") else ""
     half = f"half the runs whirl at a friction of {criticals}"
@@ -145,9 +150,10 @@ def deciding(answer: Part, rows: Sequence[Part]) -> Iterator[str]:
     drawn = [(row.get("uncertain_verdict"), row.name, row.verdict) for row in known]
     if others := [(verdict, name) for verdict, name, mean in drawn if verdict not in (None, mean)]:
         yield f"That is at the means of the uncertain inputs; with them drawn: {by_verdict(others)}."
-    if any(row.get("own_critical_friction") == 0.0 and row.get("land_clearance") for row in known):
-        yield "Half the runs whirl even without friction in the pockets: these do not drive them."
     best = known[0]
+    undriven = [row.name for row in known if row.get("own_critical_friction") == 0.0]
+    if undriven and best.get("own_critical_friction") != 0.0:
+        yield f"{', '.join(undriven)}: {WITHOUT_FRICTION}."
     both = fill(best, "land clearance {land_clearance}, pocket clearance {pocket_clearance}")
     wide = next((one for one in answer.effects or () if one.name == "wide_land"), None)
     own = next((row for row in known if row.name == answer.candidate), None)
