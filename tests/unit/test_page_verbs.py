@@ -131,6 +131,15 @@ def test_check_says_that_bare_races_have_no_life(tmp_path):
     assert said == "[film] thickness is missing: bare races have no film that wears."
 
 
+def test_the_push_of_a_ball_levels_off_where_the_page_states():
+    """Below the friction of both races, at the force of the law of traction for any speed beyond its knee."""
+    found = computed(verb_named("mobility"), read_study("le7"))
+    law = found.record.mobility.traction
+    (lead,) = verb_named("mobility").page(part_of(document(verb_named("mobility"), found))).lead
+    assert f"levels off at {law.force(1e3 * law.speed):.4g} N." in lead
+    assert f"could carry {found.record.mobility.capacity:.4g} N" in lead
+
+
 def test_a_fluid_that_no_environment_has_is_in_its_refusal(tmp_path):
     """A mistyped one is not of the library either, and is not refused as such."""
     study = changed(tmp_path, "cryogenic-turbopump", ('fluid = "liquid nitrogen"', 'fluid = "LN3"'))
