@@ -350,7 +350,7 @@ def test_the_paper_differs_by_the_motion_too(motion):
     row = Part(candidate().values | {"paper_verdict": "UNSTABLE", "restitution_threshold": 0.9}, {})
     chain = {"race_damping": 105.7, "race_damping_free_spin": 94.4}
     told = by_paper(Part({"chain": chain, "cage": {"motion": motion}}, {}), [row], ["Phenolic"])[0].text
-    assert "a ball that may spin resists a slow push with only 94.4" in told
+    assert "a ball that may spin in an impact resists it with only 94.4" in told
     assert ("the cage also tilts" in told) is (motion == "space")
 
 

@@ -135,7 +135,7 @@ def by_paper(answer: Part, known: Sequence[Part], apart: Sequence[str]) -> list[
     numbers = ("restitution_threshold", "margin", "paper_probability_stable")
     columns = (NAME, *map(q.column, numbers), text_column("verdict", lambda row: row.paper_verdict))
     model = q.fill(answer.chain, "in the plane, balls as dampers of {race_damping}, Eq. 18")
-    ball = "a ball that may spin resists a slow push with only {race_damping_free_spin}"
+    ball = "a ball that may spin in an impact resists it with only {race_damping_free_spin}"
     tilts = "the cage also tilts and moves along the axis, and " * (answer.cage.motion == "space")
     why = q.fill(answer.chain, f" It differs for {', '.join(apart)}: in the full model {tilts}{ball}.")
     each = by_verdict((row.paper_verdict, row.name) for row in rows)
