@@ -4,12 +4,14 @@ import json
 
 import pytest
 from commands import extended, log, written
+from matplotlib.figure import Figure
 from test_reference_tables import missing
 
 from separatrix import InputError, read_study, restitution_factor, wilson_interval
 from separatrix.ground.document import Part, part_of
 from separatrix.ground.quantity import Estimate
 from separatrix.present.blocks import Level, Picture
+from separatrix.present.draw import draw_panel
 from separatrix.present.figure import Across, Trace
 from separatrix.present.text import text
 from separatrix.verbs import bearing, compare, computed, tribometer, verb_named
@@ -420,6 +422,18 @@ def test_an_envelope_has_a_curve_for_each_value_of_the_other_inputs():
     first, frequencies = envelope_figure(grid).panels
     assert [one.x.label for one in (first, frequencies)] == ["case [-]"] * 2
     assert [one.marker for one in envelope_figure(swept(1)).panels[0].marks[:1]] == ["o"]
+
+
+def test_a_safety_factor_without_an_upper_end_is_an_arrow_to_the_edge():
+    """From its lower end, where its value is not known either; a closed interval is a bar alone."""
+    grid = swept(3)
+    ends = [(1.2, 0.9, 1.6), (3.0, 2.0, None), (None, 2.5, None)]
+    for case, found in zip(grid.values["cases"], ends, strict=True):
+        case |= dict(zip(("safety_factor", "safety_factor_low", "safety_factor_high"), found, strict=True))
+    panel = envelope_figure(grid).panels[1]
+    assert panel.title.startswith("Safety factor")
+    draw_panel(axes := Figure().add_subplot(), panel)
+    assert [(one.xy[1], one.xyann[1]) for one in axes.texts] == [(1.0, 2.0), (1.0, 2.5)]
 
 
 # Pages of `tribometer` and `compare`, and saved answers that are wrong.

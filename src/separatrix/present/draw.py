@@ -285,6 +285,16 @@ def _scaled(values: Numbers, axis: Axis) -> Array:
     return np.array([np.nan if one is None else one for one in values], dtype=float) / axis.size
 
 
+def _arrows(axes: Axes, one: Trace, places: Array, starts: Array) -> None:
+    """Intervals without an upper end: arrows to the edge of the axis."""
+    along_x = one.ends_along == "x"
+    edge: Any = axes.get_yaxis_transform() if along_x else axes.get_xaxis_transform()
+    look: Any = {"arrowstyle": "->", "color": one.colour, "lw": 1.4, "shrinkA": 0, "shrinkB": 0}
+    for place, start in zip(places, starts, strict=True):
+        tip, tail = ((1.0, place), (start, place)) if along_x else ((place, 1.0), (place, start))
+        axes.annotate("", tip, tail, xycoords=edge, textcoords="data", arrowprops=look, zorder=3)
+
+
 def _trace(axes: Axes, one: Trace, panel: Panel) -> None:
     x, y = _scaled(one.x, panel.x), _scaled(one.y, panel.y)
     if one.face:
@@ -292,7 +302,10 @@ def _trace(axes: Axes, one: Trace, panel: Panel) -> None:
     if one.low:
         along = panel.x if one.ends_along == "x" else panel.y
         draw, place = (axes.hlines, y) if one.ends_along == "x" else (axes.vlines, x)
-        draw(place, _scaled(one.low, along), _scaled(one.high, along), color=one.colour, lw=1.4, zorder=3)
+        low, high = _scaled(one.low, along), _scaled(one.high, along)
+        endless = np.isfinite(low) & np.isnan(high)
+        draw(place, low, np.where(endless, low, high), color=one.colour, lw=1.4, zorder=3)
+        _arrows(axes, one, place[endless], low[endless])
     marker = f"${one.marker}$" if one.marker == "*" else one.marker
     look: Any = {"color": one.colour, "ls": DASHES[one.line], "lw": one.width, "marker": marker or None}
     look |= {"alpha": one.opacity, "rasterized": len(x) > MANY, "label": symbols(one.name) or None}

@@ -183,7 +183,7 @@ def whirls(ensemble: Ensemble, kick: int) -> str:
 def _fed_by_land(ensemble: Ensemble, kick: int) -> bool:
     """Whether the land, more than the pockets, feeds most of the runs that whirl from the kick."""
     causes = ensemble.cause[kick][ensemble.outcome[kick] == RunOutcome.WHIRLS]
-    return 2 * np.count_nonzero(causes == Cause.LAND_FRICTION) > causes.size
+    return bool(2 * np.count_nonzero(causes == Cause.LAND_FRICTION) > causes.size)
 
 
 def not_finite(ensemble: Ensemble) -> str:
