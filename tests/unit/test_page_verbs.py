@@ -602,6 +602,6 @@ def test_logs_that_were_read_alike_are_told_once(tests_of_logs):
     """With the columns that were taken, in a page that fits a screen; places along a test in minutes."""
     words = text(tribometer.page(part_of(tests_of_logs)))
     assert words.count('"friction coefficient"') == 1
-    assert "a.csv and 1 more: plain text" in words
+    assert "a.csv and 1 more: plain table (" in words
     assert "12.49" in text(tribometer.page(part_of(tests_of_logs)), Level.FULL)  # the last row, at 749.5 s
     assert words.count("\n") < 45
