@@ -134,12 +134,12 @@ def test_check_says_that_bare_races_have_no_life(tmp_path):
 
 
 def test_the_push_of_a_ball_levels_off_where_the_page_states():
-    """Below the friction of both races, at the force of the law of traction for any speed beyond its knee."""
+    """At the force of the law of traction for any speed beyond its knee; the most is friction times loads."""
     found = computed(verb_named("mobility"), read_study("le7"))
     law = found.record.mobility.traction
     (lead,) = verb_named("mobility").page(part_of(document(verb_named("mobility"), found))).lead
     assert f"levels off at {law.force(1e3 * law.speed):.4g} N." in lead
-    assert f"could carry {found.record.mobility.capacity:.4g} N" in lead
+    assert f"carries at most {found.record.mobility.capacity:.4g} N" in lead
 
 
 def test_a_fluid_that_no_environment_has_is_in_its_refusal(tmp_path):
@@ -225,9 +225,17 @@ def test_the_section_keeps_what_the_study_states(restitution):
 # --- curves, maps, sweeps ------------------------------------------------------------------------
 def test_the_linear_law_is_that_of_the_physics():
     """The line of the picture is twice the damping ratio times sqrt(2/Z), as `linear_critical_friction`."""
-    law = linear_law(2.0)
+    law = linear_law([(0.0, 2.0)])
     for eta, friction in zip(law.x[1:-1:20], law.y[1:-1:20], strict=True):
         assert restitution_factor(friction / 2.0) == pytest.approx(eta, rel=1e-12)
+
+
+def test_the_linear_limit_of_a_picture_is_that_of_its_table():
+    """Of balls of inertia it is not in proportion to the damping ratio: a 6204 has more at 0.25 than at 0."""
+    limits = [(0.0, 0.132), (0.125, 0.196), (0.25, 0.215), (0.5, 0.185), (0.75, 0.094)]
+    law = linear_law(limits)
+    drawn = dict(zip(law.x, law.y, strict=True))
+    assert [drawn[eta] for eta, _ in limits] == pytest.approx([at for _, at in limits], rel=1e-12)  # rounding
 
 
 @pytest.mark.parametrize(

@@ -37,8 +37,8 @@ def page(answer: Part) -> Page:
     """Return the page of `mobility`."""
     lead = (
         "The races resist a small push of the most loaded ball along its orbit with a damping $C_f$ of "
-        "{damping}. Friction could carry {capacity}; spin takes a part of it, so that the law of traction "
-        "levels off at "
+        "{damping}, and friction carries at most {capacity}. The law of traction, which the cage takes, is "
+        "between pushes forward and backward, and levels off at "
     )
     law = answer.traction
     level = number_of(answer, "capacity", law.slope * law.speed)
@@ -54,7 +54,7 @@ def page(answer: Part) -> Page:
             "knee $v$. The motion of the cage takes it.",
         ),
         facts(
-            ("Capacity $f_BT$ ($N_I$ + $N_E$), without spin", cell(answer, "capacity")),
+            ("Capacity $f_BT$ ($N_I$ + $N_E$)", cell(answer, "capacity")),
             ("Law of traction: slope $C$ and knee $v$", f"{show(law, 'slope')}, {show(law, 'speed')}"),
             ("It levels off at $C$ $v$", level),
             ("Largest error of the law", fill(answer, "{law_error} of the capacity")),
