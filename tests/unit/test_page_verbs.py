@@ -14,7 +14,7 @@ from separatrix.present.blocks import Level, Picture
 from separatrix.present.draw import draw_panel
 from separatrix.present.figure import Across, Trace
 from separatrix.present.text import text
-from separatrix.verbs import bearing, compare, computed, tribometer, verb_named
+from separatrix.verbs import bearing, compare, computed, life, tribometer, verb_named
 from separatrix.verbs.answer_files import document, read_answer, read_answers, read_folder
 from separatrix.verbs.compare import RESULTS, difference_interval, differing, results
 from separatrix.verbs.compare import compared as compared_answers
@@ -140,6 +140,16 @@ def test_the_push_of_a_ball_levels_off_where_the_page_states():
     (lead,) = verb_named("mobility").page(part_of(document(verb_named("mobility"), found))).lead
     assert f"levels off at {law.force(1e3 * law.speed):.4g} N." in lead
     assert f"carries at most {found.record.mobility.capacity:.4g} N" in lead
+
+
+@pytest.mark.parametrize(("half", "words"), [(None, "1.0e+05"), (2e5, "1.0e+05"), (5e4, "")])
+def test_a_life_of_stable_cages_states_when_the_film_is_gone(half, words):
+    """Unless half of the cages are unstable before; the first race counts."""
+    films = [(1e3, 4e-7, 4e-7), (1e4, 1e-7, 3e-7), (1e5, 3e-8, 2e-7), (1e6, 0.0, 0.0)]
+    names = ("revolutions", "film_inner", "film_outer")
+    course = [Part(dict(zip(names, row, strict=True)), {}) for row in films]
+    said = " ".join(life.bare(Part({"course": course, "revolutions_50": half}, {})))
+    assert said.startswith(f"But the inner race has lost its film by {words} rev") if words else said == ""
 
 
 def test_a_fluid_that_no_environment_has_is_in_its_refusal(tmp_path):

@@ -17,7 +17,7 @@ from matplotlib.figure import Figure as Canvas
 from matplotlib.font_manager import FontProperties
 from matplotlib.mathtext import math_to_image
 from matplotlib.patheffects import withStroke
-from matplotlib.ticker import LogLocator
+from matplotlib.ticker import LogLocator, MaxNLocator
 from matplotlib.transforms import Bbox, offset_copy
 
 from separatrix.ground.errors import InputError
@@ -79,6 +79,9 @@ BESIDE: dict[str, Any] = {"xycoords": "axes fraction", "fontsize": 7.0, "annotat
 
 MOST_NAMED = 3000.0
 """Ratio of the ends of a logarithmic axis below which 2 and 5 are named, too."""
+
+LEAST_NAMED = 6.0
+"""The same below which 1, 2 and 5 may leave less than three names."""
 
 
 def save(spec: Figure, *paths: Path) -> Drawing:
@@ -273,10 +276,13 @@ def _axis(axes: Axes, way: Literal["x", "y"], one: Axis) -> None:
 
 
 def _log_ticks(axis: Any) -> None:
-    """Name 1, 2 and 5 of each decade, without powers, where few decades are shown."""
+    """Name 1, 2 and 5 of each decade, without powers, where few decades are shown; of less, even steps."""
     low, high = sorted(axis.get_view_interval())
     if low > 0.0 and high / low < MOST_NAMED:
-        axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        few = high / low < LEAST_NAMED
+        axis.set_major_locator(
+            MaxNLocator(5, steps=[1, 2, 5, 10]) if few else LogLocator(subs=(1.0, 2.0, 5.0))
+        )
         axis.set_major_formatter("{x:g}")
         axis.set_minor_formatter("")
 

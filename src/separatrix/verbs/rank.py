@@ -216,6 +216,7 @@ def pictures(answer: Part, own: Part) -> list[Block]:
     caption = "Restitution thresholds of the candidates: larger is better; the upright line is this bearing."
     if has_safety(answer.overall):
         caption = "Safety factors of the candidates, larger is better: at 1 half the runs whirl."
+        caption += " An arrow has no upper end."
     found: list[Block] = [Picture("rank-overview", lambda: overview(answer, own), caption)]
     if "stability" in answer:
         caption = f"The candidates in {own.name} on the paper's stability curve: below it the cage is stable."
@@ -276,9 +277,11 @@ def overview(answer: Part, own: Part) -> fig.Figure:
 
     def trace(rows: Sequence[Part], shift: float, where: str, **look: Any) -> fig.Trace:
         known = [row for row in rows if f"{name}_low" in row]
-        if "ends_along" in look:
-            look |= {end: [row.get(f"{name}_{end}") for row in known] for end in ("low", "high")}
+        is_own = shift == 0.0  # of the others a lower end alone is shown
         return fig.Trace(
+            low=[row.get(f"{name}_low") if is_own or name not in row else None for row in known],
+            high=[row.get(f"{name}_high") for row in known],
+            ends_along="x",
             x=[row.get(name) or row.get(f"{name}_low") for row in known],
             y=[place[row.name] + shift for row in known],
             hover=tuple(f"{where}; {hover(row)}" for row in known),
@@ -287,7 +290,7 @@ def overview(answer: Part, own: Part) -> fig.Figure:
             **look,
         )
 
-    ours: dict[str, Any] = {"ends_along": "x", "marker": "D", "size": 4.5}
+    ours: dict[str, Any] = {"marker": "D", "size": 4.5}
     found: list[fig.Mark] = [
         fig.Across(at=bound, name="half the runs whirl" if safe else "this bearing with this film"),
         trace(own.materials, 0.0, f"{own.name}, with its 95 % interval", **ours),

@@ -170,9 +170,10 @@ def _bends(solution: Solution) -> Iterator[str]:
             then = "a softer ring was not computed, and the verdict is that of a rigid one."
         yield (
             f"The ring of the cage first bends at {format_quantity(first, 'Hz', 2)} (solid, without its "
-            f"pockets), {first / whirl:.2g} times the {format_quantity(whirl, 'Hz', 2)} of its whirl, and "
-            f"the model takes it as rigid, which needs {STIFF:g} times. Rings at {SOFTEST:g} to 0.45 times "
-            f"moved the critical friction of a turbopump's cage by -12 to +18 %: {then}"
+            f"pockets), {first / whirl:.2g} times the {format_quantity(whirl, 'Hz', 2)} at which it would "
+            f"whirl without clearance. The model takes it as rigid, which needs {STIFF:g} times. Rings at "
+            f"{SOFTEST:g} to 0.45 times moved the critical friction of a turbopump's cage by -12 to +18 %: "
+            f"{then}"
         )
 
 

@@ -275,9 +275,11 @@ def linear_law(known: Sequence[tuple[float, float]], *, is_upright: bool = False
     """
     from numpy import interp
 
-    eta, at = [i / 200.0 for i in range(201)], [one for one, _ in known]
-    ratios = [friction / _damping(one) for one, friction in known]
-    friction = [float(interp(one, at, ratios)) * _damping(one) for one in eta]
+    at, ratios = zip(
+        *sorted((_damping(one), friction / _damping(one)) for one, friction in known), strict=True
+    )
+    eta = [i / 200.0 for i in range(201)]
+    friction = [float(interp(_damping(one), at, ratios)) * _damping(one) for one in eta]
     x, y = (friction, eta) if is_upright else (eta, friction)
     name = "linear limit: no clearance, balls at rest"
     return Trace(x=x, y=y, name=name, colour=GREY, line="--", width=1.0)
@@ -290,13 +292,14 @@ def _damping(eta: float) -> float:
 
 def own_marks(answer: Part, curve: Part) -> list[Mark]:
     """Return the restitution factor of the bearing as an upright line, and its critical friction."""
-    text = fill(answer.chain, "this bearing, $eta$ = {restitution_factor}")
+    text = "this bearing, $eta$ = {restitution_factor}"
+    if answer.chain.damping_ratio > 1.0:
+        text += " (damping ratio {damping_ratio}; of the curve up to 1)"
+    text = fill(answer.chain, text)
     found: list[Mark] = [Across(at=answer.chain.restitution_factor, name=text)]
     here = curve.get("here")
     if here is not None and "critical_friction" in here:
         name = fill(here, "its critical friction, {critical_friction}")
-        if answer.chain.damping_ratio > 1.0:
-            name += fill(answer.chain, ", at a damping ratio of {damping_ratio}; that of the curve ends at 1")
         at = q.marks([here], "restitution_factor", "critical_friction", marker="D", is_open=True, name=name)
         found.append(at)
     return found
