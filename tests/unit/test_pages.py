@@ -21,7 +21,7 @@ from separatrix.present.draw import save
 from separatrix.present.figure import Axis, Figure, Panel, Trace
 from separatrix.present.pdf import pdf
 from separatrix.present.spreadsheet import spreadsheet
-from separatrix.present.text import text
+from separatrix.present.text import lead, text
 from separatrix.verbs import VERBS, verb_named
 from separatrix.verbs.answer_files import page_of_document, refusing_damage
 from separatrix.verdict.ledger import NAME
@@ -390,6 +390,8 @@ def test_sentences_have_the_micro_sign_of_tables():
     assert words.startswith('a gap of 120 \N{MICRO SIGN}m takes 3 \N{MICRO SIGN}W; given: "0.5 um +- 20 %"')
     assert code == ("code", "--y 5 um")
     assert "gap of 120 um takes 3 uW" in text(Page("t", "", (Note(said),)))
+    stated = Note("eta of 3 um, 3 \N{MICRO SIGN}m", "lead")  # what `report` prints
+    assert lead(Page("t", "", (stated,))) == "eta of 3 um, 3 um"
 
 
 def test_a_click_in_a_figure_is_at_the_values_of_its_axes():
