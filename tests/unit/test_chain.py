@@ -234,13 +234,22 @@ def test_the_environment_is_found_by_identity(tmp_path, fluid, environment):
     assert required_environment(study, study.ranking) == environment
 
 
+def test_the_only_environment_is_that_of_the_study(tmp_path):
+    """Without fluid and steel to match; its origin no longer reads that none fits the bearing."""
+    lines = '[ranking]\n[[ranking.candidates]]\nname = "A"\nfriction = { "vacuum, 440C" = 0.1 }\n'
+    study = extended(tmp_path, lines)
+    assert study.ranking.environment == "vacuum, 440C"
+    assert study.origins["ranking.environment"].startswith("the only one")
+
+
 LOX = '[operation]\nfluid = "LOX"\n'
 
 
 def test_an_environment_that_nothing_matches_must_be_said(tmp_path):
     """Liquid oxygen is not liquid nitrogen; the refusal lists what there is, and a given one serves."""
     study = extended(tmp_path, LOX + '[cage]\nmaterial = "Armalon"\n')
-    with pytest.raises(InputError, match=r'environment is missing.*or "liquid nitrogen, 440C"'):
+    where = r"^cryogenic-turbopump\.toml, line \d+: \[ranking\] environment is missing"
+    with pytest.raises(InputError, match=where + r'.*or "liquid nitrogen, 440C"'):
         required_environment(study, study.ranking)
     with pytest.raises(InputError, match="environment is missing"):
         require_friction(study)
@@ -253,7 +262,7 @@ def test_an_environment_that_nothing_matches_must_be_said(tmp_path):
 def test_a_cage_that_is_no_candidate_must_have_its_friction_said(tmp_path):
     """The refusal lists the candidates, and for a name that nobody has the library; one candidate serves."""
     study = case(tmp_path, 'material = "Vespel SP 211"')
-    with pytest.raises(InputError, match=r'"Vespel SP 211" is not a candidate.*My compound, Other'):
+    with pytest.raises(InputError, match=r'toml, line \d+: .* "Vespel SP 211" is not .*My compound, Other'):
         require_friction(study)
     given = case(tmp_path, 'material = "Armalon"\nball_cage_friction = 0.2')
     assert solve(given).friction.mean == 0.2

@@ -515,7 +515,10 @@ def test_keys_of_the_study_override_the_catalogue(tmp_path):
     assert (study.bearing.ball_count, study.bearing.ball_diameter) == (6, 0.003969)
     assert study.bearing.pitch_diameter == pytest.approx(0.0151)
     assert list(study.distributions) == ["bearing.pitch_diameter"]
-    assert not any("guess" in note for note in study.notes)
+    assert not any("guess" in note or "no effect" in note for note in study.notes)
+    all_of_it = text + 'bore = "8 mm"\nball_diameter = "3.969 mm"\n'
+    (note,) = (one for one in read_study(written(tmp_path, all_of_it)).notes if "designation" in one)
+    assert note == "[bearing] designation 608 has no effect: the study gives all that it fills."
 
 
 @pytest.mark.parametrize(

@@ -4,15 +4,17 @@ import json
 
 import pytest
 from commands import extended, log, written
+from matplotlib.figure import Figure
 from test_reference_tables import missing
 
 from separatrix import InputError, read_study, restitution_factor, wilson_interval
 from separatrix.ground.document import Part, part_of
 from separatrix.ground.quantity import Estimate
 from separatrix.present.blocks import Level, Picture
+from separatrix.present.draw import draw_panel
 from separatrix.present.figure import Across, Trace
 from separatrix.present.text import text
-from separatrix.verbs import bearing, compare, computed, tribometer, verb_named
+from separatrix.verbs import bearing, compare, computed, life, tribometer, verb_named
 from separatrix.verbs.answer_files import document, read_answer, read_answers, read_folder
 from separatrix.verbs.compare import RESULTS, difference_interval, differing, results
 from separatrix.verbs.compare import compared as compared_answers
@@ -131,6 +133,25 @@ def test_check_says_that_bare_races_have_no_life(tmp_path):
     assert said == "[film] thickness is missing: bare races have no film that wears."
 
 
+def test_the_push_of_a_ball_levels_off_where_the_page_states():
+    """At the force of the law of traction for any speed beyond its knee; the most is friction times loads."""
+    found = computed(verb_named("mobility"), read_study("le7"))
+    law = found.record.mobility.traction
+    (lead,) = verb_named("mobility").page(part_of(document(verb_named("mobility"), found))).lead
+    assert f"levels off at {law.force(1e3 * law.speed):.4g} N." in lead
+    assert f"carries at most {found.record.mobility.capacity:.4g} N" in lead
+
+
+@pytest.mark.parametrize(("half", "words"), [(None, "1.0e+05"), (2e5, "1.0e+05"), (5e4, "")])
+def test_a_life_of_stable_cages_states_when_the_film_is_gone(half, words):
+    """Unless half of the cages are unstable before; the first race counts."""
+    films = [(1e3, 4e-7, 4e-7), (1e4, 1e-7, 3e-7), (1e5, 3e-8, 2e-7), (1e6, 0.0, 0.0)]
+    names = ("revolutions", "film_inner", "film_outer")
+    course = [Part(dict(zip(names, row, strict=True)), {}) for row in films]
+    said = " ".join(life.bare(Part({"course": course, "revolutions_50": half}, {})))
+    assert said.startswith(f"But the inner race has lost its film by {words} rev") if words else said == ""
+
+
 def test_a_fluid_that_no_environment_has_is_in_its_refusal(tmp_path):
     """A mistyped one is not of the library either, and is not refused as such."""
     study = changed(tmp_path, "cryogenic-turbopump", ('fluid = "liquid nitrogen"', 'fluid = "LN3"'))
@@ -214,9 +235,17 @@ def test_the_section_keeps_what_the_study_states(restitution):
 # --- curves, maps, sweeps ------------------------------------------------------------------------
 def test_the_linear_law_is_that_of_the_physics():
     """The line of the picture is twice the damping ratio times sqrt(2/Z), as `linear_critical_friction`."""
-    law = linear_law(2.0)
+    law = linear_law([(0.0, 2.0)])
     for eta, friction in zip(law.x[1:-1:20], law.y[1:-1:20], strict=True):
         assert restitution_factor(friction / 2.0) == pytest.approx(eta, rel=1e-12)
+
+
+def test_the_linear_limit_of_a_picture_is_that_of_its_table():
+    """Of balls of inertia it is not in proportion to the damping ratio: a 6204 has more at 0.25 than at 0."""
+    limits = [(0.0, 0.132), (0.125, 0.196), (0.25, 0.215), (0.5, 0.185), (0.75, 0.094)]
+    law = linear_law(limits)
+    drawn = dict(zip(law.x, law.y, strict=True))
+    assert [drawn[eta] for eta, _ in limits] == pytest.approx([at for _, at in limits], rel=1e-12)  # rounding
 
 
 @pytest.mark.parametrize(
@@ -341,7 +370,7 @@ def test_the_paper_differs_by_the_motion_too(motion):
     row = Part(candidate().values | {"paper_verdict": "UNSTABLE", "restitution_threshold": 0.9}, {})
     chain = {"race_damping": 105.7, "race_damping_free_spin": 94.4}
     told = by_paper(Part({"chain": chain, "cage": {"motion": motion}}, {}), [row], ["Phenolic"])[0].text
-    assert "a ball that may spin resists a slow push with only 94.4" in told
+    assert "a ball that may spin in an impact resists it with only 94.4" in told
     assert ("the cage also tilts" in told) is (motion == "space")
 
 
@@ -411,6 +440,18 @@ def test_an_envelope_has_a_curve_for_each_value_of_the_other_inputs():
     first, frequencies = envelope_figure(grid).panels
     assert [one.x.label for one in (first, frequencies)] == ["case [-]"] * 2
     assert [one.marker for one in envelope_figure(swept(1)).panels[0].marks[:1]] == ["o"]
+
+
+def test_a_safety_factor_without_an_upper_end_is_an_arrow_to_the_edge():
+    """From its lower end, where its value is not known either; a closed interval is a bar alone."""
+    grid = swept(3)
+    ends = [(1.2, 0.9, 1.6), (3.0, 2.0, None), (None, 2.5, None)]
+    for case, found in zip(grid.values["cases"], ends, strict=True):
+        case |= dict(zip(("safety_factor", "safety_factor_low", "safety_factor_high"), found, strict=True))
+    panel = envelope_figure(grid).panels[1]
+    assert panel.title.startswith("Safety factor")
+    draw_panel(axes := Figure().add_subplot(), panel)
+    assert [(one.xy[1], one.xyann[1]) for one in axes.texts] == [(1.0, 2.0), (1.0, 2.5)]
 
 
 # Pages of `tribometer` and `compare`, and saved answers that are wrong.
@@ -579,6 +620,6 @@ def test_logs_that_were_read_alike_are_told_once(tests_of_logs):
     """With the columns that were taken, in a page that fits a screen; places along a test in minutes."""
     words = text(tribometer.page(part_of(tests_of_logs)))
     assert words.count('"friction coefficient"') == 1
-    assert "a.csv and 1 more: plain text" in words
+    assert "a.csv and 1 more: plain table (" in words
     assert "12.49" in text(tribometer.page(part_of(tests_of_logs)), Level.FULL)  # the last row, at 749.5 s
     assert words.count("\n") < 45

@@ -16,12 +16,12 @@ from separatrix.front import api, main
 from separatrix.ground.document import part_of
 from separatrix.ground.quantity import Estimate
 from separatrix.present import html, quantity_text
-from separatrix.present.blocks import Facts, Heading, Level, Note, Picture, Table, View, spans
+from separatrix.present.blocks import Facts, Heading, Level, Note, Page, Picture, Table, View, spans
 from separatrix.present.draw import save
 from separatrix.present.figure import Axis, Figure, Panel, Trace
 from separatrix.present.pdf import pdf
 from separatrix.present.spreadsheet import spreadsheet
-from separatrix.present.text import text
+from separatrix.present.text import lead, text
 from separatrix.verbs import VERBS, verb_named
 from separatrix.verbs.answer_files import page_of_document, refusing_damage
 from separatrix.verdict.ledger import NAME
@@ -381,6 +381,17 @@ def test_dollar_signs_of_a_user_are_no_formula():
     assert list(spans(said)) == kinds
     panel = Panel(title=said, x=Axis(label="a [-]"), y=Axis(label="b [-]"), marks=())
     assert save(Figure(rows=((panel,),))).svg.startswith("<svg")
+
+
+def test_sentences_have_the_micro_sign_of_tables():
+    """But not what a study file states, nor code; plain text has a u everywhere."""
+    said = 'a gap of 120 um takes 3 uW; given: "0.5 um +- 20 %"; write `--y 5 um`.'
+    (_, words), code, _ = spans(said)
+    assert words.startswith('a gap of 120 \N{MICRO SIGN}m takes 3 \N{MICRO SIGN}W; given: "0.5 um +- 20 %"')
+    assert code == ("code", "--y 5 um")
+    assert "gap of 120 um takes 3 uW" in text(Page("t", "", (Note(said),)))
+    stated = Note("eta of 3 um, 3 \N{MICRO SIGN}m", "lead")  # what `report` prints
+    assert lead(Page("t", "", (stated,))) == "eta of 3 um, 3 um"
 
 
 def test_a_click_in_a_figure_is_at_the_values_of_its_axes():

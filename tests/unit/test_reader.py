@@ -153,7 +153,6 @@ angle = 0.5 => clearance = "994 mm" :: line 2: [part] size must be smaller; got 
 ^ given = {} :: line 1: [given] must have 1 to 2 names; got 0 of them.
 ^ given = { a = 1, " b" = 2 } :: line 1: [given]  b, its name, must not begin or end with a space; got " b".
 ^ given = { a = { valu = 1 } } :: line 1: [given] a.valu is not a valid key. Did you mean value?
-    :: line 1: [given] a lacks: value.
 ^ given = { a = [1] } :: line 1: [given] a must be a table with value; got a list.
 ^ modulus = "5 mm" :: line 1: modulus.value needs a unit of pressure or modulus
 ^ modulus = "0 GPa" :: line 1: modulus.value must lie between 1 Pa and 1000 GPa; got "0 GPa".

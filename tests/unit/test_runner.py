@@ -323,9 +323,14 @@ FEW = replace(WHEEL.stability, runs=4, duration=0.005, restitution_factors=(0.2,
 
 @pytest.fixture(scope="module")
 def two():
-    """Two worker processes."""
+    """Two worker processes; another Dask on this machine may have port 8787."""
     with distributed.LocalCluster(
-        n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None, silence_logs=50
+        n_workers=2,
+        threads_per_worker=1,
+        processes=True,
+        dashboard_address=None,
+        silence_logs=50,
+        scheduler_kwargs={"dashboard_address": "127.0.0.1:0"},
     ) as found:
         yield found
 

@@ -112,6 +112,7 @@ def test_a_workbook_is_read_as_it_is_meant(tmp_path, what):
         assert found.time.tolist() == ([0.0, 1.0, 3.0, 4.0] if gap else [0.0, 1.0, 2.0, 3.0, 4.0])
         assert found.friction.tolist() == [0.1] * found.rows
     assert found.missing == (1 if what.startswith("a missing") else 0)
+    assert found.format.startswith("plain table (Excel workbook")
 
 
 SHEETS = {"a": [["Time [s]", "COF"], *([float(i), 0.1 + 0.01 * (i % 3)] for i in range(9))]}

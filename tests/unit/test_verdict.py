@@ -152,6 +152,9 @@ def test_a_land_whirl_that_grows_is_not_stable_and_says_what_drives_it():
     result = judge(GUIDED, replace(runs, cause=np.full((3, 16), int(Cause.LAND_FRICTION))))
     assert (result.verdict, result.by_kick[0].kept_by_land) == (UNSTABLE, 0)
     assert result.reason.endswith("friction on the land, more than that in the pockets, feeds the cage 5 W.")
+    some = ensemble(many(46, 18))
+    told = judge(GUIDED, replace(some, cause=np.full((3, 64), int(Cause.LAND_FRICTION)))).reason
+    assert told.endswith("more runs would not change that, less friction on the land would.")
 
 
 LAW = BallTraction(mass=2e-3, slope=800.0, speed=0.05)  # which holds 40 N

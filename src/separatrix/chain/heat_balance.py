@@ -226,7 +226,8 @@ def _required(study: Study, name: str, temperature: Kelvin) -> float:
     if found is None:
         rule = f"has no {name.replace('_', ' ')} near {format_quantity(temperature, 'K')} in the library"
         cure = "Leave [cooling] out, or state it in a library file of your own."
-        raise InputError(f"{study.name}: [operation] fluid", rule, str(study.operation.fluid), cure)
+        where = f"{study.place('operation.fluid')}: [operation] fluid"
+        raise InputError(where, rule, str(study.operation.fluid), cure)
     return found
 
 

@@ -314,6 +314,9 @@ class Reading:
             if name not in keys and len(self.faults) <= MOST_FAULTS:
                 refused.add(name)
                 self._unknown(name, raw[name], path, keys)
+                if (meant := toml.near(name, keys)) and meant not in raw:  # which is not missing as well
+                    written.add(meant)
+                    refused.add(meant)
         for fault in faults_of(owner, keys, values, written, refused):
             self._refuse_fault(fault, path, keys)
         self._ignore_silent_keys(keys, values, written, refused, raw, path)

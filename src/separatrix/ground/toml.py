@@ -207,12 +207,18 @@ def folded(name: str) -> str:
     return "".join(c for c in name.casefold() if c.isalnum())
 
 
+def near(name: str, known: Iterable[str]) -> str | None:
+    """The known name that one resembles most, if any."""
+    by_case = {c.casefold(): c for c in known}
+    found = get_close_matches(name[:80].casefold(), by_case, 1, 0.6)
+    return by_case[found[0]] if found else None
+
+
 def nearest(name: str, known: Iterable[str]) -> str:
     """Sentence for a name that is not known: the nearest one that is, and as many as fit in a line."""
     choices = list(known)
-    by_case = {c.casefold(): c for c in choices}
-    if near := get_close_matches(name[:80].casefold(), by_case, 1, 0.6):
-        return f"Did you mean {by_case[near[0]]}?"
+    if found := near(name, choices):
+        return f"Did you mean {found}?"
     return cut_list(f"Known: {', '.join(choices)}.")
 
 

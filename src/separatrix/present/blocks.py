@@ -259,10 +259,16 @@ def explained(columns: Iterable[Column]) -> str:
 
 _MARKED = re.compile(r"`([^`]*)`|\$([A-Za-z]\w*(?:\(\w\))?)\$")
 
+_MICRO = re.compile(r'"[^"]*"|`[^`]*`|(?<=\d )u(?=(?:m|s|N|W|J|Pa)\b)')
+"""The u of a unit after its number; and what stays as it is written: quoted of a study file, or code."""
+
 
 def spans(text: str) -> Iterator[tuple[Literal["text", "code", "symbol"], str]]:
-    """Yield the parts of a text: words, what is between backticks, a symbol between dollar signs."""
-    end = 0
+    """Yield the parts of a text: words, what is between backticks, a symbol between dollar signs.
+
+    A unit in words has the micro sign, as in tables; plain text has a u for both.
+    """
+    text, end = _MICRO.sub(lambda one: "\N{MICRO SIGN}" if one[0] == "u" else one[0], text), 0
     for one in _MARKED.finditer(text):
         if one.start() > end:
             yield "text", text[end : one.start()]

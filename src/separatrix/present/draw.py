@@ -17,7 +17,7 @@ from matplotlib.figure import Figure as Canvas
 from matplotlib.font_manager import FontProperties
 from matplotlib.mathtext import math_to_image
 from matplotlib.patheffects import withStroke
-from matplotlib.ticker import LogLocator
+from matplotlib.ticker import LogLocator, MaxNLocator
 from matplotlib.transforms import Bbox, offset_copy
 
 from separatrix.ground.errors import InputError
@@ -79,6 +79,9 @@ BESIDE: dict[str, Any] = {"xycoords": "axes fraction", "fontsize": 7.0, "annotat
 
 MOST_NAMED = 3000.0
 """Ratio of the ends of a logarithmic axis below which 2 and 5 are named, too."""
+
+LEAST_NAMED = 6.0
+"""The same below which 1, 2 and 5 may leave less than three names."""
 
 
 def save(spec: Figure, *paths: Path) -> Drawing:
@@ -273,16 +276,29 @@ def _axis(axes: Axes, way: Literal["x", "y"], one: Axis) -> None:
 
 
 def _log_ticks(axis: Any) -> None:
-    """Name 1, 2 and 5 of each decade, without powers, where few decades are shown."""
+    """Name 1, 2 and 5 of each decade, without powers, where few decades are shown; of less, even steps."""
     low, high = sorted(axis.get_view_interval())
     if low > 0.0 and high / low < MOST_NAMED:
-        axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        few = high / low < LEAST_NAMED
+        axis.set_major_locator(
+            MaxNLocator(5, steps=[1, 2, 5, 10]) if few else LogLocator(subs=(1.0, 2.0, 5.0))
+        )
         axis.set_major_formatter("{x:g}")
         axis.set_minor_formatter("")
 
 
 def _scaled(values: Numbers, axis: Axis) -> Array:
     return np.array([np.nan if one is None else one for one in values], dtype=float) / axis.size
+
+
+def _arrows(axes: Axes, one: Trace, places: Array, starts: Array) -> None:
+    """Intervals without an upper end: arrows to the edge of the axis."""
+    along_x = one.ends_along == "x"
+    edge: Any = axes.get_yaxis_transform() if along_x else axes.get_xaxis_transform()
+    look: Any = {"arrowstyle": "->", "color": one.colour, "lw": 1.4, "shrinkA": 0, "shrinkB": 0}
+    for place, start in zip(places, starts, strict=True):
+        tip, tail = ((1.0, place), (start, place)) if along_x else ((place, 1.0), (place, start))
+        axes.annotate("", tip, tail, xycoords=edge, textcoords="data", arrowprops=look, zorder=3)
 
 
 def _trace(axes: Axes, one: Trace, panel: Panel) -> None:
@@ -292,7 +308,10 @@ def _trace(axes: Axes, one: Trace, panel: Panel) -> None:
     if one.low:
         along = panel.x if one.ends_along == "x" else panel.y
         draw, place = (axes.hlines, y) if one.ends_along == "x" else (axes.vlines, x)
-        draw(place, _scaled(one.low, along), _scaled(one.high, along), color=one.colour, lw=1.4, zorder=3)
+        low, high = _scaled(one.low, along), _scaled(one.high, along)
+        endless = np.isfinite(low) & np.isnan(high)
+        draw(place, low, np.where(endless, low, high), color=one.colour, lw=1.4, zorder=3)
+        _arrows(axes, one, place[endless], low[endless])
     marker = f"${one.marker}$" if one.marker == "*" else one.marker
     look: Any = {"color": one.colour, "ls": DASHES[one.line], "lw": one.width, "marker": marker or None}
     look |= {"alpha": one.opacity, "rasterized": len(x) > MANY, "label": symbols(one.name) or None}

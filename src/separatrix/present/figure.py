@@ -41,6 +41,8 @@ class Axis:
 class Trace:
     """A line, marks, or both, with the interval of each point along x or y; `hover` is a text for each point.
 
+    An interval that has `low` and not `high` has no upper end.
+
     `face` is a colour inside a closed line that hides what was drawn before, `has_halo` a white edge above
     colours.
     """

@@ -444,8 +444,8 @@ def marks(
         values = [estimate(row, name) for row in rows]
         if any(isinstance(one, Estimate) for one in values):
             known = [one if isinstance(one, Estimate) else Estimate(one) for one in values]
-            found |= {"ends_along": way, "low": [one.low for one in known]}
-            found |= {"high": [one.value if one.high is None else one.high for one in known]}
+            low, high = [one.low for one in known], [one.high for one in known]
+            found |= {"ends_along": way, "low": low, "high": high}
             values = [one.value for one in known]
         found[way] = values
     return Trace(hover=tuple(hover(row) for row in rows) if hover else (), **found)

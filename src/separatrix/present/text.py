@@ -43,6 +43,11 @@ def text(page: Page, level: Level = Level.BRIEF) -> str:
     return "\n".join(parts).translate(ASCII) + "\n"
 
 
+def lead(page: Page) -> str:
+    """Return the answer of a page in a few sentences, a paragraph each."""
+    return "\n".join(map(words, page.lead)).translate(ASCII)
+
+
 def _block(block: Block) -> str:
     match block:
         case Heading(text=title):

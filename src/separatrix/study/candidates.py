@@ -277,8 +277,6 @@ def fitting_environment(study: Study, library: Library) -> str | None:
     question, fluid = study.ranking, study.operation.fluid
     if question is None or question.environment is not None or fluid is None:
         return None
-    if len(question.environments) == 1:
-        return None
 
     def alike(one: str, other: str, kind: str) -> bool:
         first, second = (library.named(kind, name.strip()) or folded(name) for name in (one, other))
@@ -334,7 +332,8 @@ def required_environment(study: Study, question: RankingQuestion) -> str:
         steels = " or ".join(dict.fromkeys((at.ball_material.name, at.ring_material.name)))
         rule = f"is missing: none, or more than one, matches [operation] fluid {fluid} and {steels}"
         names = " or ".join(f'"{name}"' for name in question.environments)
-        raise InputError(f"{study.name}: [ranking] environment", rule, cure=f"Write environment = {names}.")
+        where = f"{study.place('ranking.friction', 'ranking.candidates')}: [ranking] environment"
+        raise InputError(where, rule, cure=f"Write environment = {names}.")
     return found
 
 
@@ -342,7 +341,7 @@ def require_friction(study: Study) -> None:
     """Refuse a study whose cage has no known friction, with the missing key and its alternatives."""
     if study.cage is not None and study.cage.ball_cage_friction is not None:
         return
-    where = f"{study.name}: [cage] ball_cage_friction"
+    where = f"{study.place('cage.material', 'cage.pocket_clearance')}: [cage] ball_cage_friction"
     if study.ranking is None:
         raise InputError(where, "is missing", cure="Give it, or [ranking] with measured frictions.")
     candidate, named = cage_candidate(study), _name(study)

@@ -32,6 +32,10 @@ def read_bearing(raw: Any, path: KeyPath, reading: Reading) -> BallBearing:
     filled = {key: record.data[key][0] for key in GEOMETRY if key in record.data and key not in given}
     values = {key: _raw(key, datum.value) for key, datum in filled.items()}
     bearing = reading.record(BallBearing, {**raw, "designation": name, **values}, path)
+    if not filled:
+        reading.notes.append(
+            f"[bearing] designation {name} has no effect: the study gives all that it fills."
+        )
     guesses: dict[str, str] = {}
     for key, datum in filled.items():
         value = f"{key} {format_quantity(datum.value, UNITS[key])}"

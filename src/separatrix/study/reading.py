@@ -16,7 +16,7 @@ from separatrix.ground.reader import Document, Loaded, document_of, read_documen
 from separatrix.ground.schema import Made, built, defaults_of
 from separatrix.ground.toml import KeyPath, label_of, path_text, read_text
 from separatrix.ground.units import printable, shown
-from separatrix.study.candidates import candidate_named, fitting_environment
+from separatrix.study.candidates import candidate_named, environment_of, fitting_environment
 from separatrix.study.cautions import cautions
 from separatrix.study.distribution import Distribution
 from separatrix.study.keys import MOST_DISTRIBUTIONS, settled_in
@@ -25,6 +25,7 @@ from separatrix.study.study import CageModel, Study, shipped_studies
 from separatrix.study.uncertain import StudyHelper, written
 
 FROM_BEARING = "that of [operation] fluid and of [bearing] ball_material or ring_material"
+ONLY = "the only one in which candidates were measured"
 LIBRARY = "library "
 """Before the number and the name of a library file that a study keeps: no path of a value begins so."""
 
@@ -107,9 +108,10 @@ def _study_of(
     if study.cage is not None:
         named = candidate_named(study, document.written(("cage", "material")))
         values["cage"] = built_with(study.cage, material_name=named)
-    if environment := fitting_environment(study, library):
+    only = environment_of(study.ranking) if study.ranking and study.ranking.environment is None else None
+    if environment := only or fitting_environment(study, library):
         values["ranking"] = built_with(study.ranking, environment=environment)
-        values["origins"]["ranking.environment"] = FROM_BEARING
+        values["origins"]["ranking.environment"] = ONLY if only else FROM_BEARING
     return _with_distributions(built_with(study, **values), loaded, document), loaded.notes
 
 

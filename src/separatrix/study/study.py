@@ -324,6 +324,11 @@ class Study:
     content: Mapping[str, Any] | None = field(default=None, compare=False, repr=False)
     """What the study was read from: its name, its merged keys, and the texts of the files that they name."""
 
+    def place(self, *keys: str) -> str:
+        """File and line of the first of these keys that is given; the name of the study if none is."""
+        given = (self.origins[one].partition(": ")[0] for one in keys if one in self.origins)
+        return next(given, self.name)
+
 
 @check(Study)
 def _balls_that_turn(operation: Operation, bearing: BallBearing) -> Faults:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -86,7 +87,7 @@ def page(answer: Part) -> Page:
     drivers = (text_column("input", lambda row: row.name), column("correlation"))
     return page_of(
         answer,
-        Note(" ".join([*lead(answer), *why(answer), *again(answer), *faster(answer)]), "lead"),
+        Note(" ".join([*lead(answer), *bare(answer), *why(answer), *again(answer), *faster(answer)]), "lead"),
         Heading(f"In the course of time, {answer.candidate}"),
         Table("course", columns, tuple(rows)),
         Note(LEGEND, "legend", Level.LONG),
@@ -141,6 +142,21 @@ def lead(answer: Part) -> Iterator[str]:
         yield fill(answer, f"Up to {{horizon}} revolutions {{never_unstable}} {whose} never become unstable.")
     if answer.unstable_at_start > 0.0:
         yield fill(answer, "{unstable_at_start} of them are unstable from the start.")
+
+
+BARE = 0.1
+"""Film on a race over that of the first time of the course, below which the race is as good as bare."""
+
+
+def bare(answer: Part) -> Iterator[str]:
+    """Yield when a race loses its film, if that comes before half the cages are unstable."""
+    new, ends = answer.course[0], answer.get("revolutions_50") or inf
+    for row in answer.course:
+        for race in ("inner", "outer"):
+            if row.revolutions < ends and getattr(row, name := f"film_{race}") < BARE * getattr(new, name):
+                words = f"But the {race} race has lost its film by {{revolutions}} revolutions (median): "
+                yield fill(row, words + "the bearing then wears, whether its cage is stable or not.")
+                return
 
 
 WHY = {

@@ -255,8 +255,9 @@ def _overlays(answer: Part) -> Iterator[Mark]:
     """Yield the linear limit, a bar from each point below a change to that above, and the study."""
     x, y, found = answer.x, answer.y, answer.get("changes")
     if set(_names(answer)) == {FRICTION, RESTITUTION}:
-        law = linear_law(2.0 * sqrt(2.0 / answer.cage.ball_count), is_upright=x.parameter == FRICTION)
-        yield replace(law, colour=BLACK, has_halo=True)
+        damped = [(0.0, 2.0 * sqrt(2.0 / answer.cage.ball_count))]
+        law = linear_law(damped, is_upright=x.parameter == FRICTION)
+        yield replace(law, name=f"{law.name}, balls as dampers", colour=BLACK, has_halo=True)
     if found:
         place, low, high = ([one.get(name) for one in found] for name in ("x", "y_low", "y_high"))
         middle = [0.5 * (one.y_low + one.y_high) for one in found]

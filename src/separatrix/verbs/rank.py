@@ -135,7 +135,7 @@ def by_paper(answer: Part, known: Sequence[Part], apart: Sequence[str]) -> list[
     numbers = ("restitution_threshold", "margin", "paper_probability_stable")
     columns = (NAME, *map(q.column, numbers), text_column("verdict", lambda row: row.paper_verdict))
     model = q.fill(answer.chain, "in the plane, balls as dampers of {race_damping}, Eq. 18")
-    ball = "a ball that may spin resists a slow push with only {race_damping_free_spin}"
+    ball = "a ball that may spin in an impact resists it with only {race_damping_free_spin}"
     tilts = "the cage also tilts and moves along the axis, and " * (answer.cage.motion == "space")
     why = q.fill(answer.chain, f" It differs for {', '.join(apart)}: in the full model {tilts}{ball}.")
     each = by_verdict((row.paper_verdict, row.name) for row in rows)
@@ -224,6 +224,7 @@ def pictures(answer: Part, own: Part) -> list[Block]:
     caption = "Restitution thresholds of the candidates: larger is better; the upright line is this bearing."
     if has_safety(answer.overall):
         caption = "Safety factors of the candidates, larger is better: at 1 half the runs whirl."
+        caption += " An arrow has no upper end."
     found: list[Block] = [Picture("rank-overview", lambda: overview(answer, own), caption)]
     if "stability" in answer:
         caption = f"The candidates in {own.name} on the paper's stability curve: below it the cage is stable."
@@ -284,9 +285,11 @@ def overview(answer: Part, own: Part) -> fig.Figure:
 
     def trace(rows: Sequence[Part], shift: float, where: str, **look: Any) -> fig.Trace:
         known = [row for row in rows if f"{name}_low" in row]
-        if "ends_along" in look:
-            look |= {end: [row.get(f"{name}_{end}") for row in known] for end in ("low", "high")}
+        is_own = shift == 0.0  # of the others a lower end alone is shown
         return fig.Trace(
+            low=[row.get(f"{name}_low") if is_own or name not in row else None for row in known],
+            high=[row.get(f"{name}_high") for row in known],
+            ends_along="x",
             x=[row.get(name) or row.get(f"{name}_low") for row in known],
             y=[place[row.name] + shift for row in known],
             hover=tuple(f"{where}; {hover(row)}" for row in known),
@@ -295,7 +298,7 @@ def overview(answer: Part, own: Part) -> fig.Figure:
             **look,
         )
 
-    ours: dict[str, Any] = {"ends_along": "x", "marker": "D", "size": 4.5}
+    ours: dict[str, Any] = {"marker": "D", "size": 4.5}
     found: list[fig.Mark] = [
         fig.Across(at=bound, name="half the runs whirl" if safe else "this bearing with this film"),
         trace(own.materials, 0.0, f"{own.name}, with its 95 % interval", **ours),

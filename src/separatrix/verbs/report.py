@@ -40,7 +40,9 @@ class Report:
 
     def summary(self) -> str:
         """The answer in a few sentences, a paragraph each."""
-        return "\n".join(self.page.lead)
+        from separatrix.present.text import lead
+
+        return lead(self.page)
 
     def html(self) -> str:
         """One HTML file, as text, that needs no other file and no network."""

@@ -56,6 +56,7 @@ def cluster(address: str) -> Iterator[tuple[Executor, int]]:
                     threads_per_worker=1,
                     processes=True,
                     dashboard_address=None,
+                    scheduler_kwargs={"dashboard_address": "127.0.0.1:0"},  # of its metrics: else 8787
                     silence_logs=50,  # a worker that is lost is not a fault
                 )
             )

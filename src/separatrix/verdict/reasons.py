@@ -175,9 +175,15 @@ def whirls(ensemble: Ensemble, kick: int) -> str:
     power = fed[whirling & (fed > 0.0)]
     if not power.size:
         return f"{first}; the energy passes {GROWN:g} times that of disturbance and frame."
-    by_land = np.mean(ensemble.cause[kick][whirling] == Cause.LAND_FRICTION) > 0.5
-    what = "friction on the land, more than that in the pockets," if by_land else "friction"
+    land = "friction on the land, more than that in the pockets,"
+    what = land if _fed_by_land(ensemble, kick) else "friction"
     return f"{first}; {what} feeds the cage {_watt(float(np.median(power)))}."
+
+
+def _fed_by_land(ensemble: Ensemble, kick: int) -> bool:
+    """Whether the land, more than the pockets, feeds most of the runs that whirl from the kick."""
+    causes = ensemble.cause[kick][ensemble.outcome[kick] == RunOutcome.WHIRLS]
+    return bool(2 * np.count_nonzero(causes == Cause.LAND_FRICTION) > causes.size)
 
 
 def not_finite(ensemble: Ensemble) -> str:
@@ -203,9 +209,10 @@ def mixed(ensemble: Ensemble, counts: tuple[KickCount, ...], kick: int, *, is_su
             seen = _first_left(ensemble)
         return f"Of {count.runs} runs from {count.kick:g} m/s {said}: {CAUSES[most]} ({seen})."
     if is_sure:
+        which = " on the land" if _fed_by_land(ensemble, kick) else ""
         return (
             f"The start decides: of {count.runs} runs from {count.kick:g} m/s {said}; more runs would not "
-            "change that, less friction would."
+            f"change that, less friction{which} would."
         )
     cure = "more may decide: raise [stability] runs"
     return f"No clear answer from {count.kick:g} m/s: of {count.runs} runs {said}; {cure}."

@@ -84,7 +84,7 @@ def read_log(path: str | Path, column_map: ColumnMap | None = None) -> tuple[Raw
         raise _unmapped(content, draft, text, why)
     columns = column_map_of(text, f"{content.name}, its heads").by("its name")
     stated = {meaning: one for meaning, one in known.columns.items() if meaning in columns.columns}
-    name = fitting[0].name if fitting else "plain text"
+    name = fitting[0].name if fitting else "plain table"
     columns = replace(columns, columns={**columns.columns, **stated}, name=name)
     try:
         return tuple(replace(log, notes=(*log.notes, *draft.notes)) for log in _logs(content, columns))

@@ -257,7 +257,7 @@ def curve_marks(curve: Part, top: float) -> list[Mark]:
         found.append(Band(x=eta, low=low, high=high, name=name, opacity=0.15))
     known = [one for one in curve.get("linear_limit") or () if one.restitution_factor < 1.0]
     if known:
-        found.append(linear_law(known[0].critical_friction / _damping(known[0].restitution_factor)))
+        found.append(linear_law([(one.restitution_factor, one.critical_friction) for one in known]))
     return found
 
 
@@ -274,10 +274,18 @@ def disturbances(curve: Part) -> list[str]:
     return [number_of(curve, "kicks", one) for one in curve.kicks]
 
 
-def linear_law(scale: float, *, is_upright: bool = False) -> Trace:
-    """Return the friction of the linear law, ``scale`` times the damping ratio at a restitution factor."""
+def linear_law(known: Sequence[tuple[float, float]], *, is_upright: bool = False) -> Trace:
+    """Return the linear law through restitution factors, below 1, and their frictions.
+
+    Of dampers friction is in proportion to the damping ratio; of balls of inertia what is between follows.
+    """
+    from numpy import interp
+
+    at, ratios = zip(
+        *sorted((_damping(one), friction / _damping(one)) for one, friction in known), strict=True
+    )
     eta = [i / 200.0 for i in range(201)]
-    friction = [scale * _damping(one) for one in eta]
+    friction = [float(interp(_damping(one), at, ratios)) * _damping(one) for one in eta]
     x, y = (friction, eta) if is_upright else (eta, friction)
     name = "linear limit: no clearance, balls at rest"
     return Trace(x=x, y=y, name=name, colour=GREY, line="--", width=1.0)
@@ -290,7 +298,10 @@ def _damping(eta: float) -> float:
 
 def own_marks(answer: Part, curve: Part) -> list[Mark]:
     """Return the restitution factor of the bearing as an upright line, and its critical friction."""
-    text = fill(answer.chain, "this bearing, $eta$ = {restitution_factor}")
+    text = "this bearing, $eta$ = {restitution_factor}"
+    if answer.chain.damping_ratio > 1.0:
+        text += " (damping ratio {damping_ratio}; of the curve up to 1)"
+    text = fill(answer.chain, text)
     found: list[Mark] = [Across(at=answer.chain.restitution_factor, name=text)]
     here = curve.get("here")
     if here is not None and "critical_friction" in here:
