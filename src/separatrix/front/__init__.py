@@ -15,18 +15,9 @@ INTERRUPTED = 130
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command line and return its exit status.
+    """Run the command line on `arguments`, by default those of the process; return its exit status.
 
-    Parameters
-    ----------
-    arguments : sequence of str, optional
-        What follows the program's name; by default what the process was given.
-
-    Returns
-    -------
-    int
-        0 answered, 1 a fault of ours, 2 a wrong input (on standard error a line for each mistake),
-        130 interrupted.
+    0 answered, 1 a fault of ours, 2 a wrong input (a line for each mistake on standard error), 130 interrupted.
     """
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # numpy reads it; our threads are those of --jobs
     try:
