@@ -17,7 +17,7 @@ INTERRUPTED = 130
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line on `arguments`, by default those of the process; return its exit status.
 
-    0 answered, 1 a fault of ours, 2 a wrong input (a line for each mistake on standard error), 130 interrupted.
+    0 answered, 1 a fault of ours, 2 a wrong input (a line a mistake on standard error), 130 interrupted.
     """
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # numpy reads it; our threads are those of --jobs
     try:
