@@ -136,7 +136,7 @@ def seen_on_a_land(land_friction: float) -> tuple[Judgement, LongLook | None]:
 
 
 def test_a_land_that_takes_over_a_calm_cage_keeps_it_from_stable():
-    """At a land friction of 0.4 15 of 16 runs settle within 0.1 s, and most whirl round the land within 1 s."""
+    """At a land friction of 0.4, 15 of 16 runs settle within 0.1 s, and most whirl within 1 s."""
     judged, look = seen_on_a_land(0.4)
     assert look is not None
     assert (judged.verdict, look.runs) == (Verdict.STABLE, 16)
