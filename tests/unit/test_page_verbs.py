@@ -9,7 +9,7 @@ from test_reference_tables import missing
 
 from separatrix import InputError, read_study, restitution_factor, wilson_interval
 from separatrix.ground.document import Part, part_of
-from separatrix.ground.quantity import Estimate
+from separatrix.ground.quantity import Estimate, Quantity, alone
 from separatrix.present.blocks import Level, Picture
 from separatrix.present.draw import draw_panel
 from separatrix.present.figure import Across, Trace
@@ -19,6 +19,7 @@ from separatrix.verbs.answer_files import document, read_answer, read_answers, r
 from separatrix.verbs.compare import RESULTS, difference_interval, differing, results
 from separatrix.verbs.compare import compared as compared_answers
 from separatrix.verbs.map import map_figure, nearest_words, unchanged
+from separatrix.verbs.parts.answer_page import entry_words
 from separatrix.verbs.parts.bearing_drawing import CAGE, bearing_picture, section_of
 from separatrix.verbs.parts.verdict_blocks import (
     deciding,
@@ -32,6 +33,7 @@ from separatrix.verbs.stability import own_words
 from separatrix.verbs.sweep import SHOWN, case_table, envelope_figure, worst_words
 
 SHIPPED = "cryogenic-turbopump"
+W = {"rubbing_power": "W"}
 
 
 def answer(verb, study):
@@ -339,6 +341,34 @@ def test_the_headline_states_no_force_beyond_what_the_races_hold():
         Part({"effects": None, "candidate": None}, {}), [Part(values | {"land_clearance": None}, units)]
     )
     assert said.endswith("with pocket forces above what the races hold, 593 N.")
+
+
+@pytest.mark.parametrize(
+    ("others", "words"),
+    [((), "Every cage stays"), (("SETTLED",), "The cage of Phenolic, Phenolic stays")],
+)
+def test_the_headline_states_the_heat_of_cages_that_rub_on_their_land(others, words):
+    """A cage of 18 g was STABLE, and the 336 W with which it rubs at 99 m/s in a table below alone."""
+    motions = [("ON THE LAND", 336.0), ("ON THE LAND", 367.0), *((one, 0.0) for one in others)]
+    rows = [
+        Part(candidate().values | {"land_clearance": None, "cage_motion": motion, "rubbing_power": power}, W)
+        for motion, power in motions
+    ]
+    (said,) = deciding(Part({"effects": None, "candidate": None}, {}), rows)
+    assert said == f"{words} on its land and rubs it with 336 W to 367 W of heat."
+
+
+def test_an_interval_without_width_is_not_written():
+    """A ball slid in its pocket at 104 (104 to 104) m/s."""
+    for ends, words in (((104.0, 104.2), "104 m/s"), ((103.0, 105.0), "104 (103 to 105) m/s")):
+        assert alone(Estimate(104.1, *ends), Quantity(label="", digits=3), "m/s") == words
+
+
+def test_an_angle_that_follows_from_the_clearance_has_four_digits():
+    """It was 14.89452 deg, of a clearance of 8 um; a stated one is as it is written."""
+    entry = {"value": 0.2599584, "unit": "rad", "origin": "derived, from radial_clearance"}
+    assert entry_words(entry) == "14.89 deg"
+    assert entry_words(entry | {"origin": "case.toml, line 4"}) == "14.89452 deg"
 
 
 def test_the_headline_names_who_has_another_verdict_with_the_inputs_drawn():

@@ -55,7 +55,7 @@ QUANTITIES: dict[str, Quantity] = {
     "max_pressure": Q(label="maximum Hertz pressure", head="pressure", symbol="p_0", digits=4),
     "approach": Q(label="mutual approach", digits=4),
     "rolling_speed": Q(label="rolling speed", digits=4),
-    "spin_roll_ratio": Q(label="pivoting to rolling ratio", head="spin/roll", form=".4f"),
+    "spin_roll_ratio": Q(label="spin to roll ratio", head="spin/roll", form=".4f"),
     "pressure": Q(label="pressure", symbol="p"),
     "creep_spin": Q(label="creep by spin, s", digits=4),
     "creep_curvature": Q(label="creep by curvature, q", digits=4),

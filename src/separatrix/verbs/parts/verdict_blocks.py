@@ -176,6 +176,10 @@ def deciding(answer: Part, rows: Sequence[Part]) -> Iterator[str]:
             force = "above what the races hold, {force_limit}"
         words = "a weak whirl remains, fed {pocket_power}, with pocket forces " + force
         yield f"{weak[0].name} rolls in its pockets: {fill(weak[0], words)}."
+    rubs = [row for row in known if row.cage_motion == "ON THE LAND" and row.verdict == "STABLE"]
+    if rubs:
+        whose = "Every cage" if rubs == known else f"The cage of {', '.join(row.name for row in rubs)}"
+        yield f"{whose} stays on its land and rubs it with {span(rubs, 'rubbing_power')} of heat."
     beyond = [bool(row.extrapolation) for row in known]
     if any(beyond):
         yield f"{'All' if all(beyond) else 'Some'} frictions are extrapolated."
