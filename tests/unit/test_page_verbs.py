@@ -18,7 +18,7 @@ from separatrix.verbs import bearing, compare, computed, life, tribometer, verb_
 from separatrix.verbs.answer_files import document, read_answer, read_answers, read_folder
 from separatrix.verbs.compare import RESULTS, difference_interval, differing, results
 from separatrix.verbs.compare import compared as compared_answers
-from separatrix.verbs.map import map_figure, nearest_words, unchanged
+from separatrix.verbs.map import map_figure, nearest_words, unchanged, undecided
 from separatrix.verbs.parts.answer_page import entry_words
 from separatrix.verbs.parts.bearing_drawing import CAGE, bearing_picture, section_of
 from separatrix.verbs.parts.verdict_blocks import (
@@ -124,6 +124,12 @@ def test_check_says_that_heat_is_refused_of_a_fluid_unknown_at_its_temperature(t
     with pytest.raises(ValueError, match="no density near 100 K") as refused:
         computed(verb_named("bearing"), study)
     assert str(refused.value) == found[0].sentence
+
+
+def test_the_torque_of_a_bearing_leaves_the_friction_of_its_cage_to_a_run(tmp_path):
+    """`bearing` and `simulate` had 238 and 299 mN m as the torque of the shaft of one pump."""
+    study = changed(tmp_path, "cryogenic-turbopump", more="\n[cooling]\nswirl = 0.4\n")
+    assert "Torque of the shaft, without friction of the cage" in text(bearing.page(answer("bearing", study)))
 
 
 def test_check_says_that_bare_races_have_no_life(tmp_path):
@@ -414,6 +420,20 @@ def test_a_map_says_what_is_next_to_the_study_and_where_it_changes():
     assert [*unchanged(mapped(changes=[]))] == []
     calm = [one.values | {"probability_high": 0.3} for one in mapped().points]
     assert [*unchanged(mapped(changes=[], points=calm))] == [("Whirls nowhere", "at 1 \N{MICRO SIGN}m")]
+
+
+def test_a_map_states_why_points_at_which_nothing_whirls_are_undecided():
+    """24 of 64 points were UNDECIDED beside "whirls nowhere"; the reason was in the JSON alone."""
+    points = [
+        Part({"decision": decision, "whirling": whirling, "reason": reason}, {})
+        for decision, whirling, reason in (
+            ("UNDECIDED", 0, "0.3 mm off"),
+            ("UNDECIDED", 0, "0.4 mm off"),
+            ("UNDECIDED", 3, "No clear answer"),
+            ("STABLE", 0, "All settle"),
+        )
+    ]
+    assert undecided(Part({"points": points}, {})) == ["0.3 mm off (And 1 more with other numbers.)"]
 
 
 def test_every_point_of_a_map_has_its_values_to_point_at():

@@ -38,7 +38,7 @@ def page(answer: Part) -> Page:
     lead = (
         "The races resist a small push of the most loaded ball along its orbit with a damping $C_f$ of "
         "{damping}, and friction carries at most {capacity}. The law of traction, which the cage takes, is "
-        "between pushes forward and backward, and levels off at "
+        "fitted to pushes both ways, in which spin takes a part of the friction: it levels off at "
     )
     law = answer.traction
     return page_of(
