@@ -392,6 +392,10 @@ def test_the_headline_explains_a_critical_friction_of_zero():
     row = candidate(critical=(0.0, 0.0, 0.0))
     (said,) = deciding(Part({"effects": None, "candidate": None}, {}), [row])
     assert said.endswith("without friction in the pockets: these do not drive them.")
+    wide = dict(zip((CRITICAL, f"{CRITICAL}_low", f"{CRITICAL}_high"), (0.254, 0.24, 0.272), strict=True))
+    effects = [{"name": "wide_land", "change": "a land of 0.4 mm", **wide}]
+    _, land = deciding(Part({"effects": effects, "candidate": "Phenolic"}, {}), [row])
+    assert "and lowers the critical friction" in land  # it read that the land does not decide
 
 
 def test_a_critical_friction_that_was_not_found_is_no_friction_of_a_whirl():

@@ -229,8 +229,8 @@ def beyond_strips(tracks: tuple[RaceTrack, RaceTrack], asked: TractionSettings) 
     )
     if lateral > LATERAL:
         yield (
-            f"Spin pushes the ball across the groove with up to {100.0 * lateral:.0f} % of friction times load; "
-            "strips have no such force."
+            f"Spin pushes the ball across the groove with up to {100.0 * lateral:.0f} % of friction times "
+            "load; strips have no such force."
         )
 
 

@@ -157,10 +157,13 @@ def deciding(answer: Part, rows: Sequence[Part]) -> Iterator[str]:
         words += fill(wide, "{own_critical_friction}")
         whirling = [row.name for row in known if row.verdict != "STABLE"]
         above = [row.name for row in known if row.friction > critical and row.name not in whirling]
-        if wide.own_critical_friction_low > (own.get("own_critical_friction_high") or inf):
+        at_most, wide_at_most = (
+            inf if (high := one.get("own_critical_friction_high")) is None else high for one in (own, wide)
+        )
+        if wide.own_critical_friction_low > at_most:
             lowers = "and lowers the critical friction"
             yield f"The land stops the cage before its pockets do ({both}) {lowers}. {words}."
-        elif (wide.get("own_critical_friction_high") or inf) >= own.own_critical_friction_low:
+        elif wide_at_most >= own.own_critical_friction_low:
             yield f"The land stops the cage before its pockets do ({both}) but does not decide. {words}."
         else:
             steadies = "is not enough for " + ", ".join(whirling) if whirling else "keeps it stable"
