@@ -29,7 +29,7 @@ from separatrix.verbs.parts.verdict_blocks import (
     verdict_sentences,
 )
 from separatrix.verbs.rank import by_paper
-from separatrix.verbs.stability import own_words
+from separatrix.verbs.stability import friction_words, own_words
 from separatrix.verbs.sweep import SHOWN, case_table, envelope_figure, worst_words
 
 SHIPPED = "cryogenic-turbopump"
@@ -336,6 +336,15 @@ def test_an_overdamped_bearing_is_not_the_curve_at_its_restitution_factor(eta, i
     """Both have eta = 0: on the curve half of the runs whirl at no friction, in the bearing at 0.487."""
     (said,) = own_words(Part({"here": {"restitution_factor": eta, "critical_friction": 0.487}}, {}))
     assert ("overdamped: its race damping is below that of the curve at 0" in said) is is_said
+
+
+@pytest.mark.parametrize(("side", "most"), [("BELOW", "fewer"), ("ABOVE", "more")])
+def test_a_cage_without_a_critical_friction_has_its_friction_placed(side, most):
+    """A cage of 0.08 whirls at no friction up to 1, and the answer on it had no word of 0.08."""
+    study = {"cage": {"ball_cage_friction": {"value": 0.08}}}
+    found = {"here": {"side": side}, "study": study, "cage": {"ball_cage_friction": 0.08}}
+    (said,) = friction_words(part_of({**found, "units": {}}))
+    assert said == f"At the cage's friction, 0.08, as at any other, {most} than half of the runs whirl."
 
 
 def test_the_headline_states_no_force_beyond_what_the_races_hold():

@@ -330,14 +330,15 @@ def curve_blocks(curve: Part, level: Level = Level.ALWAYS) -> list[Block]:
         *(column(name, is_short=True) for name in ENDS if curve.band),
         column("critical_friction", of=lambda row: linear.get(row.restitution_factor), head="linear limit"),
     )
-    reasons = dict.fromkeys(one.reason for one in points if "reason" in one)
+    reasons = grouped((one.reason, show(one, "restitution_factor")) for one in points if "reason" in one)
     return [
         Equation(
             r"f_{lin} = 2\,\zeta\,\sqrt{2/Z}",
-            "Linear limit of the friction: $Z$ balls, no clearance, damping ratio $zeta$ of an impact.",
+            "Linear limit of the friction: $Z$ balls as dampers, no clearance, damping ratio $zeta$ of an "
+            "impact; of balls of inertia it is that of their small motions.",
         ),
         Table("stability curve", columns, tuple(points), caption, level),
-        *(Note(f"{q.begun(one)}.", "legend", level) for one in reasons),
+        *(Note(f"At {', '.join(at)}: {one}.", "legend", level) for one, at in reasons.items()),
         all_numbers("points of the curve", (), ((one,) for one in points_of(curve))),
     ]
 
