@@ -26,7 +26,7 @@ QUANTITIES: dict[str, Quantity] = {
     "azimuth": Q(label="azimuth of the ball", head="azimuth", digits=4),
     "orbital_speed": Q(label="orbital speed of the ball", head="orbit", unit="rad/s", digits=5),
     "pitch_angle": Q(label="pitch angle of the ball's spin", head="pitch", digits=4),
-    "axial_displacement": Q(label="axial displacement of the inner ring", digits=4),
+    "axial_displacement": Q(label="axial displacement from first contact", digits=4),
     "radial_displacement": Q(label="radial displacement of the inner ring", digits=4),
     "tilt": Q(label="tilt of the inner ring", digits=4),
     "moment": Q(label="moment of the balls", digits=4),
