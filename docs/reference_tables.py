@@ -206,7 +206,7 @@ REPORTED = (
 TRACTION = (
     Line("area", meaning="fields of the exact contact in free rolling"),
     *CONTACTS,
-    Line("by_spin_roll_ratio", meaning="curves by strips at other pivoting-to-rolling ratios"),
+    Line("by_spin_roll_ratio", meaning="curves by strips at other spin-to-roll ratios"),
     Line("shear", meaning="shear of a few strips in free rolling"),
 )
 FILMS = (

@@ -9,7 +9,7 @@ from test_reference_tables import missing
 
 from separatrix import InputError, read_study, restitution_factor, wilson_interval
 from separatrix.ground.document import Part, part_of
-from separatrix.ground.quantity import Estimate
+from separatrix.ground.quantity import Estimate, Quantity, alone
 from separatrix.present.blocks import Level, Picture
 from separatrix.present.draw import draw_panel
 from separatrix.present.figure import Across, Trace
@@ -18,7 +18,8 @@ from separatrix.verbs import bearing, compare, computed, life, tribometer, verb_
 from separatrix.verbs.answer_files import document, read_answer, read_answers, read_folder
 from separatrix.verbs.compare import RESULTS, difference_interval, differing, results
 from separatrix.verbs.compare import compared as compared_answers
-from separatrix.verbs.map import map_figure, nearest_words, unchanged
+from separatrix.verbs.map import map_figure, nearest_words, unchanged, undecided
+from separatrix.verbs.parts.answer_page import entry_words
 from separatrix.verbs.parts.bearing_drawing import CAGE, bearing_picture, section_of
 from separatrix.verbs.parts.verdict_blocks import (
     deciding,
@@ -28,10 +29,11 @@ from separatrix.verbs.parts.verdict_blocks import (
     verdict_sentences,
 )
 from separatrix.verbs.rank import by_paper
-from separatrix.verbs.stability import own_words
+from separatrix.verbs.stability import friction_words, own_words
 from separatrix.verbs.sweep import SHOWN, case_table, envelope_figure, worst_words
 
 SHIPPED = "cryogenic-turbopump"
+W = {"rubbing_power": "W"}
 
 
 def answer(verb, study):
@@ -122,6 +124,12 @@ def test_check_says_that_heat_is_refused_of_a_fluid_unknown_at_its_temperature(t
     with pytest.raises(ValueError, match="no density near 100 K") as refused:
         computed(verb_named("bearing"), study)
     assert str(refused.value) == found[0].sentence
+
+
+def test_the_torque_of_a_bearing_leaves_the_friction_of_its_cage_to_a_run(tmp_path):
+    """`bearing` and `simulate` had 238 and 299 mN m as the torque of the shaft of one pump."""
+    study = changed(tmp_path, "cryogenic-turbopump", more="\n[cooling]\nswirl = 0.4\n")
+    assert "Torque of the shaft, without friction of the cage" in text(bearing.page(answer("bearing", study)))
 
 
 def test_check_says_that_bare_races_have_no_life(tmp_path):
@@ -330,6 +338,15 @@ def test_an_overdamped_bearing_is_not_the_curve_at_its_restitution_factor(eta, i
     assert ("overdamped: its race damping is below that of the curve at 0" in said) is is_said
 
 
+@pytest.mark.parametrize(("side", "most"), [("BELOW", "fewer"), ("ABOVE", "more")])
+def test_a_cage_without_a_critical_friction_has_its_friction_placed(side, most):
+    """A cage of 0.08 whirls at no friction up to 1, and the answer on it had no word of 0.08."""
+    study = {"cage": {"ball_cage_friction": {"value": 0.08}}}
+    found = {"here": {"side": side}, "study": study, "cage": {"ball_cage_friction": 0.08}}
+    (said,) = friction_words(part_of({**found, "units": {}}))
+    assert said == f"At the cage's friction, 0.08, as at any other, {most} than half of the runs whirl."
+
+
 def test_the_headline_states_no_force_beyond_what_the_races_hold():
     """It was up to 3140 N where the table below it had > 593."""
     forces = {"largest_contact_force": 3140.0, "force_limit": 593.0, "force_exceeds_races": True}
@@ -339,6 +356,34 @@ def test_the_headline_states_no_force_beyond_what_the_races_hold():
         Part({"effects": None, "candidate": None}, {}), [Part(values | {"land_clearance": None}, units)]
     )
     assert said.endswith("with pocket forces above what the races hold, 593 N.")
+
+
+@pytest.mark.parametrize(
+    ("others", "words"),
+    [((), "Every cage stays"), (("SETTLED",), "The cage of Phenolic, Phenolic stays")],
+)
+def test_the_headline_states_the_heat_of_cages_that_rub_on_their_land(others, words):
+    """A cage of 18 g was STABLE, and the 336 W with which it rubs at 99 m/s in a table below alone."""
+    motions = [("ON THE LAND", 336.0), ("ON THE LAND", 367.0), *((one, 0.0) for one in others)]
+    rows = [
+        Part(candidate().values | {"land_clearance": None, "cage_motion": motion, "rubbing_power": power}, W)
+        for motion, power in motions
+    ]
+    (said,) = deciding(Part({"effects": None, "candidate": None}, {}), rows)
+    assert said == f"{words} on its land and rubs it with 336 W to 367 W of heat."
+
+
+def test_an_interval_without_width_is_not_written():
+    """A ball slid in its pocket at 104 (104 to 104) m/s."""
+    for ends, words in (((104.0, 104.2), "104 m/s"), ((103.0, 105.0), "104 (103 to 105) m/s")):
+        assert alone(Estimate(104.1, *ends), Quantity(label="", digits=3), "m/s") == words
+
+
+def test_an_angle_that_follows_from_the_clearance_has_four_digits():
+    """It was 14.89452 deg, of a clearance of 8 um; a stated one is as it is written."""
+    entry = {"value": 0.2599584, "unit": "rad", "origin": "derived, from radial_clearance"}
+    assert entry_words(entry) == "14.89 deg"
+    assert entry_words(entry | {"origin": "case.toml, line 4"}) == "14.89452 deg"
 
 
 def test_the_headline_names_who_has_another_verdict_with_the_inputs_drawn():
@@ -356,6 +401,10 @@ def test_the_headline_explains_a_critical_friction_of_zero():
     row = candidate(critical=(0.0, 0.0, 0.0))
     (said,) = deciding(Part({"effects": None, "candidate": None}, {}), [row])
     assert said.endswith("without friction in the pockets: these do not drive them.")
+    wide = dict(zip((CRITICAL, f"{CRITICAL}_low", f"{CRITICAL}_high"), (0.254, 0.24, 0.272), strict=True))
+    effects = [{"name": "wide_land", "change": "a land of 0.4 mm", **wide}]
+    _, land = deciding(Part({"effects": effects, "candidate": "Phenolic"}, {}), [row])
+    assert "and lowers the critical friction" in land  # it read that the land does not decide
 
 
 def test_a_critical_friction_that_was_not_found_is_no_friction_of_a_whirl():
@@ -384,6 +433,20 @@ def test_a_map_says_what_is_next_to_the_study_and_where_it_changes():
     assert [*unchanged(mapped(changes=[]))] == []
     calm = [one.values | {"probability_high": 0.3} for one in mapped().points]
     assert [*unchanged(mapped(changes=[], points=calm))] == [("Whirls nowhere", "at 1 \N{MICRO SIGN}m")]
+
+
+def test_a_map_states_why_points_at_which_nothing_whirls_are_undecided():
+    """24 of 64 points were UNDECIDED beside "whirls nowhere"; the reason was in the JSON alone."""
+    points = [
+        Part({"decision": decision, "whirling": whirling, "reason": reason}, {})
+        for decision, whirling, reason in (
+            ("UNDECIDED", 0, "0.3 mm off"),
+            ("UNDECIDED", 0, "0.4 mm off"),
+            ("UNDECIDED", 3, "No clear answer"),
+            ("STABLE", 0, "All settle"),
+        )
+    ]
+    assert undecided(Part({"points": points}, {})) == ["0.3 mm off (And 1 more with other numbers.)"]
 
 
 def test_every_point_of_a_map_has_its_values_to_point_at():

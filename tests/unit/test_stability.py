@@ -122,11 +122,11 @@ USUAL = logistic(0.12, 8.0)
     [
         (
             (USUAL, USUAL, lambda f: max(0.3, USUAL(f))),
-            *("low", "10% of the runs from 1 m/s whirl even at zero pocket friction"),
+            *("low", "10 % of the runs from 1 m/s whirl even at zero pocket friction"),
         ),
         (
             (lambda f: min(0.7, USUAL(f)), USUAL, USUAL),
-            *("high", "under 90% of the runs from 0.2 m/s whirl at friction 1"),
+            *("high", "under 90 % of the runs from 0.2 m/s whirl at friction 1"),
         ),
     ],
 )

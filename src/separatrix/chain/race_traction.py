@@ -206,7 +206,7 @@ def beyond_strips(tracks: tuple[RaceTrack, RaceTrack], asked: TractionSettings) 
         return
     off = _apart(tracks, STRIPS, by_hertz)
     if off > CLOSE:
-        yield f"The slopes by strips are up to {off:.0%} off those of the exact contact."
+        yield f"The slopes by strips are up to {100.0 * off:.0f} % off those of the exact contact."
     is_soft = all(track.film.wear is None for track in tracks) and any(
         film_strain(track, track.ellipse.max_pressure) * (track.film.thickness or 0.0)
         > SQUEEZED * track.ellipse.approach
@@ -217,14 +217,14 @@ def beyond_strips(tracks: tuple[RaceTrack, RaceTrack], asked: TractionSettings) 
     pressed = _apart(tracks, by_coated, by_hertz) if is_pressed else 0.0
     if pressed > CLOSE:
         yield (
-            f"The film changes the pressure, and with it the slopes by up to {pressed:.0%}: "
+            f"The film changes the pressure, and with it the slopes by up to {100.0 * pressed:.0f} %: "
             'consider [traction] pressure = "coated".'
         )
     strain = max(film_strain(track, one.max_pressure) for track, one in zip(tracks, found, strict=True))
     if strain > STRAINED:
         yield (
-            f"The pressure compresses the film by {strain:.0%} of its thickness: above {STRAINED:.0%} it is "
-            "not linearly elastic, as every model here takes it to be."
+            f"The pressure compresses the film by {100.0 * strain:.0f} % of its thickness: above "
+            f"{100.0 * STRAINED:.0f} % it is not linearly elastic, as every model here takes it to be."
         )
     try:
         slip = max(map(pressure_slip, tracks))
@@ -233,7 +233,7 @@ def beyond_strips(tracks: tuple[RaceTrack, RaceTrack], asked: TractionSettings) 
         slip = 0.0
     if slip > NOTICED and asked.pressure_slip is PressureSlip.NEGLECTED:
         yield (
-            f"The pressure alone makes the surfaces slip by up to {slip:.2g} of the saturation creep: "
+            f"The pressure alone makes the surfaces slip by up to {slip:.2g} times the saturation creep: "
             'consider [traction] model = "exact" with pressure_slip = "included".'
         )
     lateral = max(
@@ -242,8 +242,8 @@ def beyond_strips(tracks: tuple[RaceTrack, RaceTrack], asked: TractionSettings) 
     )
     if lateral > LATERAL:
         yield (
-            f"Spin pushes the ball across the groove with up to {lateral:.0%} of friction times load; strips "
-            "have no such force."
+            f"Spin pushes the ball across the groove with up to {100.0 * lateral:.0f} % of friction times "
+            "load; strips have no such force."
         )
 
 

@@ -75,7 +75,8 @@ def alone(value: Number, quantity: Quantity, unit: str) -> str:
     text = _one(number / size, quantity)
     if isinstance(value, Estimate) and value.low is not None:
         low, *high = (_one(end / size, quantity, sign=False) for end in value[1:] if end is not None)
-        text += f" ({low} to {high[0]})" if high else f" (> {low})"
+        if {low, *high} != {text} or not high:
+            text += f" ({low} to {high[0]})" if high else f" (> {low})"
     return f"{text} {symbol}" if symbol else text
 
 

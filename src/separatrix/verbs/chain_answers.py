@@ -57,14 +57,14 @@ class CheckAnswer:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TractionAnswer:
-    """Traction curves by the study's model, by strips at other pivoting-to-rolling ratios, and the shear."""
+    """Traction curves by the study's model, by strips at other spin-to-roll ratios, and the shear."""
 
     race_friction: Ratio  # f_BT, of ball on race
     bearing: BearingState  # equilibrium and contacts
     inner: TractionCurve  # curve of the inner race by the study's model
     outer: TractionCurve  # curve of the outer race by the study's model
-    inner_others: tuple[TractionCurve, ...]  # inner race at other pivoting-to-rolling ratios
-    outer_others: tuple[TractionCurve, ...]  # outer race at other pivoting-to-rolling ratios
+    inner_others: tuple[TractionCurve, ...]  # inner race at other spin-to-roll ratios
+    outer_others: tuple[TractionCurve, ...]  # outer race at other spin-to-roll ratios
     inner_shear: ShearField  # shear of strips in free rolling, inner race
     outer_shear: ShearField  # shear of strips in free rolling, outer race
     outside: tuple[str, ...]  # where the strips leave their range, a sentence each

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from math import sqrt
 from typing import TYPE_CHECKING, Annotated, Any
 
+from separatrix.ground import errors
 from separatrix.ground.document import Document, Part
 from separatrix.ground.units import UNITS, format_number
 from separatrix.present import quantity_text as q
@@ -78,6 +79,7 @@ def page(answer: Part) -> Page:
         answer,
         Note(" ".join(filter(None, [counted(answer), nearest_words(answer)])), "lead"),
         *(Note(f"The first of the refused points: {one.reason}") for one in refused[:1]),
+        *(Note(f"Undecided without a whirl: {one}") for one in undecided(answer)[:1]),
         facts(
             ("Across", _axis_words(answer.x)),
             ("Upward", _axis_words(answer.y)),
@@ -90,6 +92,12 @@ def page(answer: Part) -> Page:
         facts(*unchanged(answer)),
         *(q.all_numbers(name, (), ((one,) for one in answer.get(name) or ())) for name in sheets),
     )
+
+
+def undecided(answer: Part) -> list[str]:
+    """Return why points at which no run whirls are not stable; those that differ in numbers together."""
+    known = (one for one in answer.points if one.get("decision") == "UNDECIDED" and not one.whirling)
+    return errors.grouped(one.reason for one in known)
 
 
 def _names(answer: Part) -> tuple[str, str]:

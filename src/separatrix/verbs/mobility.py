@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from separatrix.ground.document import Part
 from separatrix.present.blocks import Equation, Heading, Note, Page, Picture, facts
 from separatrix.present.figure import BLUE, GREEN, GREY, VERMILION, Across, Figure, Mark, Panel, Trace
-from separatrix.present.quantity_text import axis, cell, fact, fill, named, number_of, places_table, show
+from separatrix.present.quantity_text import axis, cell, fact, fill, named, places_table, show
 from separatrix.verbs.parts.answer_page import figure, page_of
 from separatrix.verbs.verb import NoOptions, Verb
 
@@ -38,13 +38,12 @@ def page(answer: Part) -> Page:
     lead = (
         "The races resist a small push of the most loaded ball along its orbit with a damping $C_f$ of "
         "{damping}, and friction carries at most {capacity}. The law of traction, which the cage takes, is "
-        "between pushes forward and backward, and levels off at "
+        "fitted to pushes both ways, in which spin takes a part of the friction: it levels off at "
     )
     law = answer.traction
-    level = number_of(answer, "capacity", law.slope * law.speed)
     return page_of(
         answer,
-        Note(f"{fill(answer, lead)}{level}.", "lead"),
+        Note(f"{fill(answer, lead)}{show(law, 'capacity')}.", "lead"),
         Heading("Small motion of the most loaded ball"),
         facts(*(fact(answer, name, named(name)) for name in SMALL)),
         Heading("Push along the orbit"),
@@ -56,7 +55,7 @@ def page(answer: Part) -> Page:
         facts(
             ("Capacity $f_BT$ ($N_I$ + $N_E$)", cell(answer, "capacity")),
             ("Law of traction: slope $C$ and knee $v$", f"{show(law, 'slope')}, {show(law, 'speed')}"),
-            ("It levels off at $C$ $v$", level),
+            ("It levels off at $C$ $v$", cell(law, "capacity")),
             ("Largest error of the law", fill(answer, "{law_error} of the capacity")),
             ("Forward and backward differ by", fill(answer, "up to {asymmetry} of the capacity")),
         ),

@@ -77,7 +77,11 @@ def friction_words(answer: Part) -> Iterator[str]:
     """Yield on which side of the band the cage's own friction is, if both are known."""
     here, friction = answer.get("here"), answer.cage.ball_cage_friction
     words = pocket_friction(answer)
-    if not words or here is None or "critical_friction" not in here:
+    if not words or here is None:
+        return
+    if "critical_friction" not in here:
+        most = "fewer than half" if here.side == "BELOW" else "more than half"
+        yield f"At the cage's friction, {words}, as at any other, {most} of the runs whirl."
         return
     low, high = here.get("critical_friction_low"), here.get("critical_friction_high")
     side = "within the band in which the disturbance decides: it is undecided"

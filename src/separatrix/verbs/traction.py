@@ -1,4 +1,4 @@
-"""`traction`: traction curves, and by strips at other pivoting-to-rolling ratios."""
+"""`traction`: traction curves, and by strips at other spin-to-roll ratios."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ CONTACT = ("load", "contact_angle", "spin_roll_ratio", "rolling_speed", *SLOPE)
 
 
 def compute(study: Study, _options: NoOptions) -> TractionAnswer:
-    """Traction curves, and by strips at other pivoting-to-rolling ratios."""
+    """Traction curves, and by strips at other spin-to-roll ratios."""
     from separatrix.chain.race_traction import beyond_strips, curves_by_ratio, shear, shown_curve
     from separatrix.chain.solution import solve
     from separatrix.verbs.chain_answers import TractionAnswer
@@ -66,7 +66,7 @@ def page(answer: Part) -> Page:
 
 CURVES = (
     "Traction coefficient against creep increment for both races (the paper's Fig. 7): this bearing with its "
-    "slope at the origin, and by strips at other pivoting to rolling ratios of the same sign. Below: shear "
+    "slope at the origin, and by strips at other spin to roll ratios of the same sign. Below: shear "
     "along rolling in free rolling, in a strip half way to the edge of each contact (the paper's Fig. 6). "
     "Surfaces enter at the right; the coloured area is what friction bears."
 )

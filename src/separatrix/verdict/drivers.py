@@ -61,7 +61,7 @@ def drivers(name: str, names: Sequence[str], scores: Array, settled: Array) -> D
     rare = int(min(settled.sum(), settled.size - settled.sum()))
     skill: Ratio | None = None
     shares: tuple[Share, ...] = ()
-    reason = f"{rare} of {settled.size} bearings end otherwise: too few to compare"
+    reason = f"{rare} of {settled.size} bearings end otherwise: too few to compare; draw more"
     if rare >= FEWEST and names:
         of_mean = _deviance(np.full(settled.size, settled.mean()), settled)
         skill = 1.0 - _deviance(_left_out(scores, settled), settled) / of_mean

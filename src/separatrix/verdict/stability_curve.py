@@ -89,8 +89,8 @@ _VALUES = (
 """Fields with value and interval of the critical friction, and of the lower and the upper end of its band."""
 
 _REASONS = {
-    Side.ABOVE: "{0:.0%} of the runs from {1:g} m/s whirl even at zero pocket friction",
-    Side.BELOW: f"under {{0:.0%}} of the runs from {{1:g}} m/s whirl at friction {SEARCHED_FRICTION:g}",
+    Side.ABOVE: "{0:.0f} % of the runs from {1:g} m/s whirl even at zero pocket friction",
+    Side.BELOW: f"under {{0:.0f}} % of the runs from {{1:g}} m/s whirl at friction {SEARCHED_FRICTION:g}",
 }
 
 
@@ -123,7 +123,9 @@ def critical_friction(
     values: dict[str, Any] = {}
     for names, (end, *_) in zip(_VALUES, ends, strict=False):
         values |= zip(names, ends_of(end), strict=True)
-    reasons = [_REASONS[end].format(share, kick) for end, share, kick in ends if isinstance(end, Side)]
+    reasons = [
+        _REASONS[end].format(100.0 * share, kick) for end, share, kick in ends if isinstance(end, Side)
+    ]
     return CriticalFriction(
         restitution_factor=own_restitution_factor(cage) if eta is None else eta,
         **values,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shlex
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 from operator import itemgetter
 from typing import Any
@@ -82,6 +83,8 @@ def sources(answer: Part, level: Level = APPENDIX) -> list[Block]:
 def entry_words(entry: Json) -> str:
     """Return the value of an input, a material's name, or a list, with its distribution."""
     words = entry.get("name") or value_words(entry.get("value"), entry.get("unit") or "")
+    if "value" in entry and str(entry.get("origin")).startswith("derived"):  # not a text of the study
+        words = alone(entry["value"], replace(INPUT, digits=4), entry.get("unit") or "")
     return f"{words} ({entry['distribution']['words']})" if "distribution" in entry else str(words)
 
 

@@ -86,17 +86,18 @@ def heat_blocks(heat: Part | None) -> list[Block]:
     warm += "{outer_ring_temperature}" + ", cage {cage_temperature}" * ("cage_temperature" in heat)
     warm += "; the coolant leaves at {coolant_out_temperature}"
     flash = "{flash_inner} inner, {flash_outer} outer race, most loaded ball"
+    alone = "" if heat.cage_power else ", without friction of the cage"
     return [
         Heading("Torque and heat with the fluid"),
         facts(
-            fact(heat, "shaft_torque"),
-            fact(heat, "shaft_power"),
+            fact(heat, "shaft_torque", "Torque of the shaft" + alone),
+            fact(heat, "shaft_power", "Power of the shaft" + alone),
             ("Drag of the balls", fill(heat, drag)),
             ("Fluid on their spin", fill(heat, "{spin_power}")),
             ("Fluid on the faces of the cage", fill(heat, faces)),
             ("Friction of the cage", fill(heat, "{cage_power}") if heat.cage_power else None),
             ("Temperatures", fill(heat, warm) if "ball_temperature" in heat else None),
-            ("Flash temperatures", fill(heat, flash) if "flash_inner" in heat else None),
+            ("Flash, rise in a contact", fill(heat, flash) if "flash_inner" in heat else None),
             ("Heat into the hotter track", fill(heat, "{track_heat}" + boils)),
         ),
     ]

@@ -163,10 +163,13 @@ def deciding(answer: Part, rows: Sequence[Part]) -> Iterator[str]:
         words += fill(wide, "{own_critical_friction}")
         whirling = [row.name for row in known if row.verdict != "STABLE"]
         above = [row.name for row in known if row.friction > critical and row.name not in whirling]
-        if wide.own_critical_friction_low > (own.get("own_critical_friction_high") or inf):
+        at_most, wide_at_most = (
+            inf if (high := one.get("own_critical_friction_high")) is None else high for one in (own, wide)
+        )
+        if wide.own_critical_friction_low > at_most:
             lowers = "and lowers the critical friction"
             yield f"The land stops the cage before its pockets do ({both}) {lowers}. {words}."
-        elif (wide.get("own_critical_friction_high") or inf) >= own.own_critical_friction_low:
+        elif wide_at_most >= own.own_critical_friction_low:
             yield f"The land stops the cage before its pockets do ({both}) but does not decide. {words}."
         else:
             steadies = "is not enough for " + ", ".join(whirling) if whirling else "keeps it stable"
@@ -182,6 +185,10 @@ def deciding(answer: Part, rows: Sequence[Part]) -> Iterator[str]:
             force = "above what the races hold, {force_limit}"
         words = "a weak whirl remains, fed {pocket_power}, with pocket forces " + force
         yield f"{weak[0].name} rolls in its pockets: {fill(weak[0], words)}."
+    rubs = [row for row in known if row.cage_motion == "ON THE LAND" and row.verdict == "STABLE"]
+    if rubs:
+        whose = "Every cage" if rubs == known else f"The cage of {', '.join(row.name for row in rubs)}"
+        yield f"{whose} stays on its land and rubs it with {span(rubs, 'rubbing_power')} of heat."
     beyond = [bool(row.extrapolation) for row in known]
     if any(beyond):
         yield f"{'All' if all(beyond) else 'Some'} frictions are extrapolated."
@@ -329,14 +336,15 @@ def curve_blocks(curve: Part, level: Level = Level.ALWAYS) -> list[Block]:
         *(column(name, is_short=True) for name in ENDS if curve.band),
         column("critical_friction", of=lambda row: linear.get(row.restitution_factor), head="linear limit"),
     )
-    reasons = dict.fromkeys(one.reason for one in points if "reason" in one)
+    reasons = grouped((one.reason, show(one, "restitution_factor")) for one in points if "reason" in one)
     return [
         Equation(
             r"f_{lin} = 2\,\zeta\,\sqrt{2/Z}",
-            "Linear limit of the friction: $Z$ balls, no clearance, damping ratio $zeta$ of an impact.",
+            "Linear limit of the friction: $Z$ balls as dampers, no clearance, damping ratio $zeta$ of an "
+            "impact; of balls of inertia it is that of their small motions.",
         ),
         Table("stability curve", columns, tuple(points), caption, level),
-        *(Note(f"{q.begun(one)}.", "legend", level) for one in reasons),
+        *(Note(f"At {', '.join(at)}: {one}.", "legend", level) for one, at in reasons.items()),
         all_numbers("points of the curve", (), ((one,) for one in points_of(curve))),
     ]
 
