@@ -7,6 +7,7 @@ from commands import extended, log, written
 from test_reference_tables import missing
 
 from separatrix import InputError, read_study, restitution_factor, wilson_interval
+from separatrix.ground.compiling import COMPILING
 from separatrix.ground.document import Part, part_of
 from separatrix.ground.quantity import Estimate
 from separatrix.present.blocks import Level, Picture
@@ -129,6 +130,29 @@ def test_check_says_that_bare_races_have_no_life(tmp_path):
     study = changed(tmp_path, "cryogenic-turbopump", *edits, more="\n[wear]\nbare_friction = 0.3\n")
     (said,) = (one.sentence for one in answer("check", study).refusals if one.verb == "life")
     assert said == "[film] thickness is missing: bare races have no film that wears."
+
+
+@pytest.mark.parametrize("speed", ["3000 rpm", "10 rpm"])
+def test_check_names_the_verbs_that_take_long(tmp_path, speed):
+    """Of a dry wheel, whose `rank` took 145 s of one core, and as slow as a gimbal; nothing is compiled."""
+    path = tmp_path / "slow.toml"
+    path.write_text(f'extends = "dry-reaction-wheel"\n[operation]\ninner_speed = "{speed}"\n')
+    compiled = []
+    COMPILING.heard.append(lambda: compiled.append(1))
+    found = answer("check", read_study(path))
+    COMPILING.heard.pop()
+    times = {one.verb: one.one_core_time for one in found.long_verbs}
+    assert list(times) == ["stability", "rank"]
+    assert 145.0 / 3.0 < times["rank"] < 145.0 * 3.0
+    lead = verb_named("check").page(found).lead[0]
+    assert f"and `rank` takes about {round(times['rank'] / 60.0)} min, within a factor of 3." in lead
+    assert compiled == []
+
+
+@pytest.mark.parametrize("study", [SHIPPED, "momentum-wheel", "le7"])
+def test_check_names_no_verb_that_is_quick(study):
+    """Or that refuses the study, as every verb of a cage refuses a bearing without one."""
+    assert answer("check", read_study(study)).long_verbs == []
 
 
 def test_a_fluid_that_no_environment_has_is_in_its_refusal(tmp_path):
