@@ -42,7 +42,7 @@ def time_of_runs(solution: Solution, runs: float) -> Second:
     """Time that one core takes for runs of a cage, within a factor of 3.
 
     A motion that the balls damp little is followed through more of its longest time. For nine bearings that
-    `rank` took 17 to 340 s for, the time was 0.5 to 1.9 times the true one.
+    `rank` took 15 to 180 s for, the time was 0.7 to 1.9 times the true one.
     """
     cage = turned_forward(moving_cage(solution, 0.0))
     settings = settings_for(solution.study.stability, cage)

@@ -130,7 +130,9 @@ class _Question:
         So an interrupt leaves verdicts, and what is left can be estimated.
         """
         cases = scattered(self.drawn.friction) if self.drawn else []
-        kinds = (_limits(self, {}), _knots(self, {}), scattered(self.keys), scattered(self.beside), cases)
+        knots = scattered(_knots(self, {}))  # two at a time: they are many, and verdicts may take long
+        kinds: list[Sequence[Piece]] = [_limits(self, {}), knots[::2], knots[1::2]]
+        kinds += [scattered(self.keys), scattered(self.beside), cases]
         in_turn = itertools.chain.from_iterable(itertools.zip_longest(*kinds))
         return [Knot(self.reference, None), *(piece for piece in in_turn if piece is not None)]
 
@@ -316,10 +318,11 @@ def _of_pocket(question: _Question, found: Findings, piece: Callable[[Pocket], P
 def _load(question: _Question, piece: Piece) -> Load:
     """Work of a piece: runs of a verdict, of a limit, or those of a point."""
     if isinstance(piece, Knot):
-        return expected_load(question.settings, band=piece.restitution_factor is None)
+        eta = piece.restitution_factor
+        return expected_load(question.settings, eta, band=eta is None)
     kicks = len(question.settings.kicks)
     if isinstance(piece, Limit):
-        return Load(kicks * expected_load(question.settings, band=False).runs, dear=6.0)
+        return Load(kicks * expected_load(question.settings, band=False).runs, dear=3.0)
     return Load(kicks * question.settings.runs)
 
 
