@@ -134,7 +134,7 @@ def test_check_says_that_bare_races_have_no_life(tmp_path):
 
 @pytest.mark.parametrize("speed", ["3000 rpm", "10 rpm"])
 def test_check_names_the_verbs_that_take_long(tmp_path, speed):
-    """Of a dry wheel, whose `rank` took 145 s of one core, and as slow as a gimbal; nothing is compiled."""
+    """Of a dry wheel, and of one as slow as a gimbal; nothing is compiled."""
     path = tmp_path / "slow.toml"
     path.write_text(f'extends = "dry-reaction-wheel"\n[operation]\ninner_speed = "{speed}"\n')
     compiled = []
@@ -143,7 +143,8 @@ def test_check_names_the_verbs_that_take_long(tmp_path, speed):
     COMPILING.heard.pop()
     times = {one.verb: one.one_core_time for one in found.long_verbs}
     assert list(times) == ["stability", "rank"]
-    assert 145.0 / 3.0 < times["rank"] < 145.0 * 3.0
+    if speed == "3000 rpm":  # 145 s were measured, and the constants are near the middle of nine bearings
+        assert 100.0 < times["rank"] < 210.0
     lead = verb_named("check").page(found).lead[0]
     assert f"and `rank` takes about {round(times['rank'] / 60.0)} min, within a factor of 3." in lead
     assert compiled == []
