@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 from test_reference_tables import missing
 
 from separatrix import InputError, read_study, restitution_factor, wilson_interval
+from separatrix.ground.compiling import COMPILING
 from separatrix.ground.document import Part, part_of
 from separatrix.ground.quantity import Estimate, Quantity, alone
 from separatrix.present.blocks import Level, Picture
@@ -158,6 +159,30 @@ def test_a_life_of_stable_cages_states_when_the_film_is_gone(half, words):
     course = [Part(dict(zip(names, row, strict=True)), {}) for row in films]
     said = " ".join(life.bare(Part({"course": course, "revolutions_50": half}, {})))
     assert said.startswith(f"But the inner race has lost its film by {words} rev") if words else said == ""
+
+
+@pytest.mark.parametrize("speed", ["3000 rpm", "10 rpm"])
+def test_check_names_the_verbs_that_take_long(tmp_path, speed):
+    """Of a dry wheel, and of one as slow as a gimbal; nothing is compiled."""
+    path = tmp_path / "slow.toml"
+    path.write_text(f'extends = "dry-reaction-wheel"\n[operation]\ninner_speed = "{speed}"\n')
+    compiled = []
+    COMPILING.heard.append(lambda: compiled.append(1))
+    found = answer("check", read_study(path))
+    COMPILING.heard.pop()
+    times = {one.verb: one.one_core_time for one in found.long_verbs}
+    assert list(times) == ["stability", "rank"]
+    if speed == "3000 rpm":  # 145 s were measured, and the constants are near the middle of nine bearings
+        assert 100.0 < times["rank"] < 210.0
+    lead = verb_named("check").page(found).lead[0]
+    assert f"and `rank` takes about {round(times['rank'] / 60.0)} min, within a factor of 3." in lead
+    assert compiled == []
+
+
+@pytest.mark.parametrize("study", [SHIPPED, "momentum-wheel", "le7"])
+def test_check_names_no_verb_that_is_quick(study):
+    """Or that refuses the study, as every verb of a cage refuses a bearing without one."""
+    assert answer("check", read_study(study)).long_verbs == []
 
 
 def test_a_fluid_that_no_environment_has_is_in_its_refusal(tmp_path):

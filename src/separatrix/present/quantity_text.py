@@ -160,6 +160,7 @@ QUANTITIES: dict[str, Quantity] = {
     "race_exponent": Q(label="the same of balls on races alone", form=".2f"),
     "judged_from": Q(label="start of the judged part", digits=4),
     "followed": Q(label="end of the judged part", digits=4),
+    "one_core_time": Q(label="time that one core needs, within a factor of 3", digits=1),
     "run_length": Q(label="length of the run", digits=4),
     "given_restitution_factor": Q(label="restitution factor in place of the study's", symbol="eta", digits=4),
     "tilt_phase": Q(label="phase of the tilt before the offset", form=".0f"),

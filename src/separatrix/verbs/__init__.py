@@ -59,7 +59,7 @@ def tool_named(name: str) -> Tool:
 
 
 def refusals(study: Study) -> Iterator[tuple[str, str]]:
-    """Yield what each verb would refuse of a study, or take long for, with the verb."""
+    """Yield what each verb would refuse of a study, with the verb."""
     for name in VERBS:
         verb = verb_named(name)
         missing = [f"[{section}]" for section in verb.needs if getattr(study, section) is None]

@@ -17,15 +17,32 @@ from separatrix.chain.impact_restitution import LubricationCurve
 from separatrix.chain.solution import Solution
 from separatrix.chain.traction_curve import ShearField, TractionCurve
 from separatrix.ground.plain_data import Group, Leaf, Node, Table, fields_of, shape
-from separatrix.ground.units import Kilogram, Metre, MetrePerSecond, MetreRadianPerSecond, Radian, Ratio, Rows
+from separatrix.ground.units import (
+    Kilogram,
+    Metre,
+    MetrePerSecond,
+    MetreRadianPerSecond,
+    Radian,
+    Ratio,
+    Rows,
+    Second,
+)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Refusal:
-    """What a verb would refuse of a study, or take long for."""
+    """What a verb would refuse of a study."""
 
-    verb: str  # that refuses the study, or takes long
+    verb: str  # that refuses the study
     sentence: str  # why, and what to do
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LongVerb:
+    """A verb that takes more than a minute of one core."""
+
+    verb: str  # that takes long
+    one_core_time: Second  # expected of one core, within a factor of 3
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -45,7 +62,8 @@ class CheckAnswer:
     The clearances are also None, without a reason, for a study that states the running ones.
     """
 
-    refusals: tuple[Refusal, ...]  # what each verb would refuse of the study, or take long for
+    refusals: tuple[Refusal, ...]  # what each verb would refuse of the study
+    long_verbs: tuple[LongVerb, ...]  # of `stability` and `rank`, those that take long
     speed_parameter: MetreRadianPerSecond  # bore, or pitch diameter where no bore is known, times speed
     cage: CheckedCage | None  # null without a cage
     static: BearingState | None  # contacts of the most loaded ball at standstill; null if refused

@@ -1,4 +1,4 @@
-"""`check`: what a study states and assumes, its pressures at standstill, and what verbs will refuse."""
+"""`check`: what a study states and assumes, its pressures at standstill, refusals and long verbs."""
 
 from __future__ import annotations
 
@@ -15,8 +15,9 @@ from separatrix.verbs.parts.chain_blocks import clearance_facts
 from separatrix.verbs.verb import NoOptions, Verb
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Iterator, Mapping
 
+    from separatrix.ground.units import Second
     from separatrix.study.study import Study
     from separatrix.verbs.chain_answers import CheckAnswer, CheckedCage
 
@@ -24,12 +25,15 @@ Link = TypeVar("Link")
 SECTIONS = ("cage", "ranking")
 """Sections that a study may lack."""
 
+COUNTED, LONG = ("stability", "rank"), 60.0
+"""Verbs whose time is expected, and what of one core is long [s]."""
+
 
 def compute(study: Study, _options: NoOptions) -> CheckAnswer:
     """What follows of a study in a second, the bearing at standstill, and what verbs will refuse."""
     from separatrix.chain.solution import solve
     from separatrix.verbs import refusals
-    from separatrix.verbs.chain_answers import CheckAnswer, Refusal
+    from separatrix.verbs.chain_answers import CheckAnswer, LongVerb, Refusal
 
     at, on = study.bearing, study.operation
     still = replace(study, operation=replace(on, inner_speed=0.0, outer_speed=0.0))
@@ -37,6 +41,7 @@ def compute(study: Study, _options: NoOptions) -> CheckAnswer:
     clearances, clearances_reason = _tried(lambda: solve(study).clearances)
     return CheckAnswer(
         refusals=tuple(Refusal(verb=verb, sentence=sentence) for verb, sentence in refusals(study)),
+        long_verbs=tuple(LongVerb(verb=verb, one_core_time=time) for verb, time in _long_verbs(study)),
         speed_parameter=(at.bore or at.pitch_diameter) * abs(on.inner_speed - on.outer_speed),
         cage=_cage(study),
         static=static,
@@ -55,6 +60,28 @@ def _tried(link: Callable[[], Link]) -> tuple[Link | None, str]:
         return link(), ""
     except SeparatrixError as error:
         return None, str(error)
+
+
+def _long_verbs(study: Study) -> Iterator[tuple[str, Second]]:
+    """Yield the verbs that take long, with the time that one core needs."""
+    from separatrix.chain.solution import solve
+    from separatrix.ground.errors import SeparatrixError
+    from separatrix.study.study import TractionSettings
+    from separatrix.verbs import verb_named
+    from separatrix.verdict.expected_time import Counting, Foreseen, time_of_runs
+
+    quick = replace(study, traction=TractionSettings(), distributions={})  # as many runs
+    for name in COUNTED:
+        verb = verb_named(name)
+        if all(getattr(study, section) is not None for section in verb.needs):
+            try:
+                verb.compute(quick, verb.options(), Counting())
+            except SeparatrixError:  # it is refused
+                continue
+            except Foreseen as found:
+                time = time_of_runs(solve(quick), found.runs)
+                if time > LONG:
+                    yield name, time
 
 
 def _cage(study: Study) -> CheckedCage | None:
@@ -93,11 +120,14 @@ def page(answer: Part) -> Page:
 
 
 def verdict(answer: Part) -> str:
-    """Return whether the study is valid, what it lacks, and which verbs refuse it."""
+    """Return whether the study is valid, what it lacks, and which verbs refuse it or take long."""
     absent = [f"[{name}]" for name in SECTIONS if not answer.values["study"].get(name)]
     words = "The study is valid." + (f" It has no {' and no '.join(absent)}." if absent else "")
     verbs = dict.fromkeys(f"`{one.verb}`" for one in answer.refusals)
-    return words + (f" {', '.join(verbs)} {'refuses' if len(verbs) == 1 else 'refuse'} it." if verbs else "")
+    words += f" {', '.join(verbs)} {'refuses' if len(verbs) == 1 else 'refuse'} it." if verbs else ""
+    minutes = [(one.verb, float(f"{one.one_core_time / 60.0:.1g}")) for one in answer.long_verbs]
+    long = [f"`{verb}` takes about {time:g} min" for verb, time in minutes]
+    return words + (f" On one core {' and '.join(long)}, within a factor of 3." if long else "")
 
 
 def ring_facts(answer: Part) -> list[tuple[str, str]]:

@@ -57,6 +57,9 @@ UNDER_WAY = 0.7
 LEAST_LEFT = 0.2
 """Share of its load that a place under way takes at least before it ends."""
 
+KNOWN = 0.1
+"""Part of the load of one place that is made of each kind before the end is expected."""
+
 
 class Load(NamedTuple):
     """Work of a place as far as it is known before."""
@@ -68,9 +71,9 @@ class Load(NamedTuple):
 class Work:
     """How far a job is, by the time that its places took and the runs that they made for it.
 
-    What is left goes on at the pace of what was made of its kind; of a kind of which little was made, at
-    that of all. A place under way takes at least a fifth of its load more. Places whose runs were kept by an
-    earlier job say nothing of the others.
+    What is left goes on at the pace of what was made of its kind, places of one type and as many runs; of a
+    kind of which little was made, at that of all. A place under way takes at least a fifth of its load more.
+    Places whose runs were kept by an earlier job say nothing of the others.
     """
 
     def __init__(self) -> None:
@@ -106,19 +109,21 @@ class Work:
         """
         with self._lock:
             done = sum(spent for spent, _ in self._spent.values())
-            made, took = defaultdict[type, float](float), defaultdict[type, Second](float)
+            kinds = {place: (type(place), load.runs) for place, load in self.loads.items()}
+            made, took, parts = (defaultdict[tuple[type, float], float](float) for _ in range(3))
             for place, load in self.loads.items():
-                spent, runs = self._spent.get(place, (0.0, 0.0))
+                kind, (spent, runs) = kinds[place], self._spent.get(place, (0.0, 0.0))
                 if place not in self._kept:
                     whole = load.runs if place in self._finished else UNDER_WAY * min(runs, load.runs)
-                    made[type(place)] += load.dear * whole
-                    took[type(place)] += spent
-            if not took or not all(took[type(place)] for place in self.loads.keys() - self._finished):
-                return done, math.inf  # nothing is known of a kind that is left
+                    made[kind] += load.dear * whole
+                    took[kind] += spent
+                    parts[kind] += whole / load.runs
+            if not took or any(parts[kinds[place]] < KNOWN for place in self.loads.keys() - self._finished):
+                return done, math.inf  # little is known of a kind that is left
             pace, left = sum(took.values()) / sum(made.values()), [0.0]
             for place, load in self.loads.items():
                 if place not in self._finished:
-                    kind, (_, runs) = type(place), self._spent.get(place, (0.0, 0.0))
+                    kind, (_, runs) = kinds[place], self._spent.get(place, (0.0, 0.0))
                     of_kind = (took[kind] + pace * load.runs) / (made[kind] + load.runs)
                     left.append(of_kind * load.dear * max(load.runs - runs, LEAST_LEFT * load.runs))
             rest = max(sum(left), threads * max(left))

@@ -141,7 +141,9 @@ class _Question:
         So an interrupt leaves verdicts, and what is left can be estimated.
         """
         cases = scattered(self.drawn.friction) if self.drawn else []
-        kinds = (_limits(self, {}), _knots(self, {}), scattered(self.keys), scattered(self.beside), cases)
+        knots = scattered(_knots(self, {}))  # two at a time: they are many, and verdicts may take long
+        kinds: list[Sequence[Piece]] = [_limits(self, {}), knots[::2], knots[1::2]]
+        kinds += [scattered(self.keys), scattered(self.beside), cases]
         in_turn = itertools.chain.from_iterable(itertools.zip_longest(*kinds))
         first = (self.longer, Knot(self.reference, None), *in_turn)
         return [piece for piece in first if piece is not None]
@@ -331,12 +333,13 @@ def _of_pocket(question: _Question, found: Findings, piece: Callable[[Pocket], P
 def _load(question: _Question, piece: Piece) -> Load:
     """Work of a piece: runs of a verdict, of a limit, or those of a point."""
     if isinstance(piece, Knot):
-        return expected_load(question.settings, band=piece.restitution_factor is None)
+        eta = piece.restitution_factor
+        return expected_load(question.settings, eta, band=eta is None)
     kicks = len(question.settings.kicks)
     if isinstance(piece, Longer):
         return Load(LANES, dear=20.0)
     if isinstance(piece, Limit):
-        return Load(kicks * expected_load(question.settings, band=False).runs, dear=6.0)
+        return Load(kicks * expected_load(question.settings, band=False).runs, dear=3.0)
     return Load(kicks * question.settings.runs)
 
 
