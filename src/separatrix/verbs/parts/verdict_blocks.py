@@ -130,7 +130,7 @@ WITHOUT_FRICTION = "half the runs whirl even without friction in the pockets, wh
 def _safety(first: Sequence[Part]) -> str:
     """Return the safety factors of the candidates that rank first, and what they are made of."""
     criticals, frictions = span(first, "own_critical_friction"), span(first, "friction")
-    lowest = min(first, key=lambda row: row.get("safety_factor_low", inf))
+    lowest = min(first, key=lambda row: row.safety_factor_low if "safety_factor_low" in row else inf)
     if lowest.get("own_critical_friction") == 0.0:
         return f"Safety factor 0: {WITHOUT_FRICTION}; they have {frictions}."
     factor = show(lowest, "safety_factor")
