@@ -8,7 +8,7 @@ import math
 import signal
 import threading
 import zlib
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor, Future, ThreadPoolExecutor, wait
 from dataclasses import fields
@@ -118,7 +118,9 @@ class Work:
                     made[kind] += load.dear * whole
                     took[kind] += spent
                     parts[kind] += whole / load.runs
-            if not took or any(parts[kinds[place]] < KNOWN for place in self.loads.keys() - self._finished):
+            many = Counter(kinds.values())
+            left_over = {kinds[place] for place in self.loads.keys() - self._finished}
+            if not took or any(parts[kind] < KNOWN for kind in left_over if many[kind] > 1):
                 return done, math.inf  # little is known of a kind that is left
             pace, left = sum(took.values()) / sum(made.values()), [0.0]
             for place, load in self.loads.items():
