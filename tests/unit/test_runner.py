@@ -463,9 +463,9 @@ def test_what_is_left_of_a_kind_goes_on_at_its_own_pace():
 
 
 def test_a_kind_of_which_little_was_made_leaves_the_end_open():
-    """A number and a word are two kinds; a run of ten counts 0.07 while its place is under way."""
+    """Numbers and words are two kinds; a run of ten counts 0.07 while its place is under way. None is alone."""
     work = Work()
-    work.loads.update(dict.fromkeys((1, 2, "slow"), Load(10.0)))
+    work.loads.update(dict.fromkeys((1, 2, "slow", "slow too", None), Load(10.0)))
     work.spend(1, 1.0, 10.0)
     for _ in range(2):
         assert work.so_far(1)[1] == math.inf
