@@ -463,7 +463,7 @@ def test_what_is_left_of_a_kind_goes_on_at_its_own_pace():
 
 
 def test_a_kind_of_which_little_was_made_leaves_the_end_open():
-    """Numbers and words are two kinds; a run of ten counts 0.07 while its place is under way. None is alone."""
+    """Numbers and words are two kinds, None is alone; a run of ten counts 0.07 of a place under way."""
     work = Work()
     work.loads.update(dict.fromkeys((1, 2, "slow", "slow too", None), Load(10.0)))
     work.spend(1, 1.0, 10.0)
