@@ -19,7 +19,7 @@ from pathlib import Path
 
 import numpy as np
 
-from separatrix.verdict.ledger import NAME
+from separatrix.verdict.long_jobs import NAME
 
 STUDY = """
 extends = "cryogenic-turbopump"

@@ -20,7 +20,7 @@ from separatrix.front import main
 from separatrix.front.page.worker import work
 from separatrix.ground import toml
 from separatrix.ground.reader import Document, read_document, read_text
-from separatrix.verdict.ledger import NAME
+from separatrix.verdict.long_jobs import NAME
 
 COMMAND = [sys.executable, "-m", "separatrix"]
 """The real command, as a process is started with."""

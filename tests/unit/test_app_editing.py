@@ -16,7 +16,7 @@ from separatrix.front.page.folder import Folder
 from separatrix.front.page.server import application
 from separatrix.front.page.worker import Job, answered
 from separatrix.ground.schema import is_record, keys_of
-from separatrix.verdict.ledger import NAME
+from separatrix.verdict.long_jobs import NAME
 
 COMMENTED = """# a study
 title = "One"   # its name

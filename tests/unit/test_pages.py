@@ -24,7 +24,7 @@ from separatrix.present.spreadsheet import spreadsheet
 from separatrix.present.text import lead, text
 from separatrix.verbs import VERBS, verb_named
 from separatrix.verbs.answer_files import page_of_document, refusing_damage
-from separatrix.verdict.ledger import NAME
+from separatrix.verdict.long_jobs import NAME
 
 SMALL = """
 extends = "momentum-wheel"

@@ -13,8 +13,7 @@ from separatrix.study.reading import read_study
 from separatrix.study.study import CageModel
 from separatrix.verdict.beyond_models import Pocket
 from separatrix.verdict.judgement import Judgement, Verdict, judge, transmitted_force
-from separatrix.verdict.ledger import NAME, Ledger
-from separatrix.verdict.long_jobs import Interrupted, Runner
+from separatrix.verdict.long_jobs import NAME, Interrupted, Ledger, Runner
 from separatrix.verdict.ranking import Asked, _row, rank
 from separatrix.verdict.ranking_records import (
     MeanFriction,

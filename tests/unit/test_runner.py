@@ -29,8 +29,18 @@ from separatrix.front.console import Pace
 from separatrix.ground.compiling import COMPILING
 from separatrix.verdict import cluster as clusters
 from separatrix.verdict.cluster import cluster
-from separatrix.verdict.ledger import NAME, Ledger, key_of
-from separatrix.verdict.long_jobs import PART, Interrupted, Load, Runner, Work, joined, scattered
+from separatrix.verdict.long_jobs import (
+    NAME,
+    PART,
+    Interrupted,
+    Ledger,
+    Load,
+    Runner,
+    Work,
+    joined,
+    key_of,
+    scattered,
+)
 
 WHEEL = read_study("momentum-wheel")
 CAGE = moving_cage(solve(WHEEL), 0.2)

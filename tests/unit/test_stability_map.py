@@ -16,7 +16,7 @@ from separatrix.cage import RunOutcome, moving_cage, run_ensemble
 from separatrix.front import main
 from separatrix.verdict.critical_friction import cage_at
 from separatrix.verdict.judgement import is_calm, judge
-from separatrix.verdict.ledger import NAME, Ledger
+from separatrix.verdict.long_jobs import NAME, Ledger
 from separatrix.verdict.parameter_axes import MapAxis, parameters, read_axis, value_in, varied
 from separatrix.verdict.stability_map import (
     AGREEING,

@@ -188,7 +188,7 @@ def document_of(verb: Verb, study: Study, given: Given, folder: Path | None, opt
     with progress_bar(f"{verb.name} {study.name}", quiet=given["quiet"]) as progress:
         found = breakable(partial(computed, verb, study, options, progress=progress, **how))
     if found.runs_taken and not given["quiet"]:
-        from separatrix.verdict.ledger import NAME
+        from separatrix.verdict.long_jobs import NAME
 
         kept = f"{folder}/{NAME}"
         complain(f"{found.runs_taken} runs were taken from {kept}, where an earlier call had kept them.")

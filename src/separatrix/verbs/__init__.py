@@ -131,8 +131,7 @@ def computed(
     if not verb.keeps_runs:
         return Computed(record=verb.compute(study, asked), study=study, options=asked, is_complete=True)
     from separatrix.verdict.cluster import cluster as connected
-    from separatrix.verdict.ledger import NAME, Ledger
-    from separatrix.verdict.long_jobs import Interrupted, Runner
+    from separatrix.verdict.long_jobs import NAME, Interrupted, Ledger, Runner
 
     threads, is_complete = jobs or processors(), True
     ledger: Ledger | None = None

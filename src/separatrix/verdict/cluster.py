@@ -13,7 +13,7 @@ from collections.abc import Iterator
 from concurrent.futures import Executor
 
 from separatrix.ground.errors import InputError
-from separatrix.verdict.ledger import program
+from separatrix.verdict.long_jobs import program
 
 WAITING = 2
 """Threads here for each worker's thread, so that no worker waits for its next piece."""

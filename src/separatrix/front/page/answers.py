@@ -27,7 +27,7 @@ from separatrix.verbs.answer_files import AGAIN, asked_by, page_of_document, ref
 from separatrix.verbs.map import at_point
 from separatrix.verbs.parts.answer_page import is_chosen
 from separatrix.verbs.report import differing
-from separatrix.verdict.ledger import NAME as LEDGER
+from separatrix.verdict.long_jobs import NAME as LEDGER
 
 Named = TypeVar("Named", blocks.Picture, blocks.View)
 EMPTY = dict.fromkeys(("title", "subtitle", "body", "refused"), "")
