@@ -24,6 +24,7 @@ from separatrix.verbs.parts.answer_page import entry_words
 from separatrix.verbs.parts.bearing_drawing import CAGE, bearing_picture, section_of
 from separatrix.verbs.parts.verdict_blocks import (
     deciding,
+    evidence_column,
     linear_law,
     pocket_friction,
     power_facts,
@@ -370,6 +371,15 @@ def test_a_cage_without_a_critical_friction_has_its_friction_placed(side, most):
     found = {"here": {"side": side}, "study": study, "cage": {"ball_cage_friction": 0.08}}
     (said,) = friction_words(part_of({**found, "units": {}}))
     assert said == f"At the cage's friction, 0.08, as at any other, {most} than half of the runs whirl."
+
+
+def test_a_cage_on_a_land_has_no_drift_rate():
+    """It was -0.000003 1/s in a table beside 1925 N on the land."""
+    runs = {"by_kick": [Part({"kick": 1.0, "whirls": 0}, {})], "worst_kick": 1.0, "runs": 64}
+    values = candidate().values | runs
+    assert evidence_column("drift_rate").cell(Part(values | {"drift_rate": -3e-6}, {})).value is None
+    free = Part(values | {"drift_rate": 2.1, "land_clearance": None}, {"drift_rate": "1/s"})
+    assert evidence_column("drift_rate").cell(free).value == 2.1
 
 
 def test_the_headline_states_no_force_beyond_what_the_races_hold():

@@ -191,10 +191,10 @@ def motion_facts(answer: Part) -> Facts:
     if "tilt_phase" in answer and (answer.tilt_coherence or 0.0) >= STEADY:
         tilt = "{largest_tilt} at most; {tilt_phase} ahead of the offset (0: a forward cone)"
     offset = "{largest_offset} at most; mean {mean_offset}, standard deviation {offset_spread} (0: a circle)"
-    law = "; by the linear law {drift_rate_law}" if answer.drift_rate_law else ""
+    drift = "{drift_rate}; by the linear law {drift_rate_law}"  # 0 with a land
     return facts(
         ("Offset", fill(answer, offset)),
-        ("Drift rate", fill(answer, "{drift_rate}" + law)),
+        ("Drift rate", fill(answer, drift) if answer.drift_rate_law else None),
         ("Tilt", fill(answer, tilt) if "largest_tilt" in answer else None),
         ("Axial place", fill(answer, "{axial_low} to {axial_high}") if "axial_low" in answer else None),
         ("Whirl", fill(answer, whirl)),
