@@ -149,10 +149,7 @@ def test_a_land_that_takes_over_a_calm_cage_keeps_it_from_stable():
     unstable = replace(judged, verdict=Verdict.UNSTABLE)
     assert seen_for_longer(unstable, look) == unstable
     assert seen_for_longer(judged, replace(look, on_land=1)) == judged  # less than a tenth
-
-
-def test_a_land_of_little_friction_leaves_a_calm_cage_alone():
-    """At 0.05 none whirls; without friction, as without a land, nothing could drive it."""
+    # at 0.05 none whirls; without friction, as without a land, nothing could drive it
     judged, look = seen_on_a_land(0.05)
     assert look is not None
     assert (look.on_land, look.largest_land_force) == (0, 0.0)

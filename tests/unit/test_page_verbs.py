@@ -178,12 +178,8 @@ def test_check_names_the_verbs_that_take_long(tmp_path, speed):
     lead = verb_named("check").page(found).lead[0]
     assert f"and `rank` takes about {round(times['rank'] / 60.0)} min, within a factor of 3." in lead
     assert compiled == []
-
-
-@pytest.mark.parametrize("study", [SHIPPED, "momentum-wheel", "le7"])
-def test_check_names_no_verb_that_is_quick(study):
-    """Or that refuses the study, as every verb of a cage refuses a bearing without one."""
-    assert answer("check", read_study(study)).long_verbs == []
+    for quick in (SHIPPED, "momentum-wheel", "le7"):  # which has no cage, and every verb of one refuses it
+        assert answer("check", read_study(quick)).long_verbs == []
 
 
 def test_a_fluid_that_no_environment_has_is_in_its_refusal(tmp_path):
@@ -272,10 +268,7 @@ def test_the_linear_law_is_that_of_the_physics():
     law = linear_law([(0.0, 2.0)])
     for eta, friction in zip(law.x[1:-1:20], law.y[1:-1:20], strict=True):
         assert restitution_factor(friction / 2.0) == pytest.approx(eta, rel=1e-12)
-
-
-def test_the_linear_limit_of_a_picture_is_that_of_its_table():
-    """Of balls of inertia it is not in proportion to the damping ratio: a 6204 has more at 0.25 than at 0."""
+    # of balls of inertia it is not in proportion to the damping ratio: a 6204 has more at 0.25 than at 0
     limits = [(0.0, 0.132), (0.125, 0.196), (0.25, 0.215), (0.5, 0.185), (0.75, 0.094)]
     law = linear_law(limits)
     drawn = dict(zip(law.x, law.y, strict=True))
@@ -408,14 +401,10 @@ def test_the_headline_states_the_heat_of_cages_that_rub_on_their_land(others, wo
     assert said == f"{words} on its land and rubs it with 336 W to 367 W of heat."
 
 
-def test_an_interval_without_width_is_not_written():
-    """A ball slid in its pocket at 104 (104 to 104) m/s."""
+def test_no_digits_stand_that_say_nothing():
+    """104 (104 to 104) m/s, and 14.89452 deg of a clearance of 8 um; a stated angle is as it is written."""
     for ends, words in (((104.0, 104.2), "104 m/s"), ((103.0, 105.0), "104 (103 to 105) m/s")):
         assert alone(Estimate(104.1, *ends), Quantity(label="", digits=3), "m/s") == words
-
-
-def test_an_angle_that_follows_from_the_clearance_has_four_digits():
-    """It was 14.89452 deg, of a clearance of 8 um; a stated one is as it is written."""
     entry = {"value": 0.2599584, "unit": "rad", "origin": "derived, from radial_clearance"}
     assert entry_words(entry) == "14.89 deg"
     assert entry_words(entry | {"origin": "case.toml, line 4"}) == "14.89452 deg"
@@ -472,15 +461,9 @@ def test_a_map_says_what_is_next_to_the_study_and_where_it_changes():
 
 def test_a_map_states_why_points_at_which_nothing_whirls_are_undecided():
     """24 of 64 points were UNDECIDED beside "whirls nowhere"; the reason was in the JSON alone."""
-    points = [
-        Part({"decision": decision, "whirling": whirling, "reason": reason}, {})
-        for decision, whirling, reason in (
-            ("UNDECIDED", 0, "0.3 mm off"),
-            ("UNDECIDED", 0, "0.4 mm off"),
-            ("UNDECIDED", 3, "No clear answer"),
-            ("STABLE", 0, "All settle"),
-        )
-    ]
+    names, off = ("decision", "whirling", "reason"), [("UNDECIDED", 0, f"0.{i} mm off") for i in (3, 4)]
+    rows = (*off, ("UNDECIDED", 3, "No clear answer"), ("STABLE", 0, "All settle"))
+    points = [Part(dict(zip(names, row, strict=True)), {}) for row in rows]
     assert undecided(Part({"points": points}, {})) == ["0.3 mm off (And 1 more with other numbers.)"]
 
 

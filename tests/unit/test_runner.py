@@ -28,19 +28,9 @@ from separatrix.front import console, main
 from separatrix.front.console import Pace
 from separatrix.ground.compiling import COMPILING
 from separatrix.verdict import cluster as clusters
+from separatrix.verdict import long_jobs as jobs
 from separatrix.verdict.cluster import cluster
-from separatrix.verdict.long_jobs import (
-    NAME,
-    PART,
-    Interrupted,
-    Ledger,
-    Load,
-    Runner,
-    Work,
-    joined,
-    key_of,
-    scattered,
-)
+from separatrix.verdict.long_jobs import NAME, PART, Interrupted, Ledger, Load, Runner, Work
 
 WHEEL = read_study("momentum-wheel")
 CAGE = moving_cage(solve(WHEEL), 0.2)
@@ -96,8 +86,8 @@ def test_the_first_tenth_of_scattered_places_resembles_all():
     times = [100.0 ** (i / 99.0) for i in range(100)]
     mean = sum(times) / 100
     assert sum(times[:10]) / 10 < mean / 10.0
-    assert sum(scattered(times)[:10]) / 10 == pytest.approx(mean, rel=0.3)
-    assert sorted(scattered(times)) == times
+    assert sum(jobs.scattered(times)[:10]) / 10 == pytest.approx(mean, rel=0.3)
+    assert sorted(jobs.scattered(times)) == times
 
 
 def test_an_interrupt_is_noticed_and_breaks_in_nowhere():
@@ -192,7 +182,7 @@ def test_bearings_of_their_own_are_run_as_each_by_itself():
     parts = [
         run_ensemble(one.cage, QUICK, kicks=(0.1, 0.5), runs=1, first_run=one.first_run) for one in asked
     ]
-    same_bits(whole, joined(parts))
+    same_bits(whole, jobs.joined(parts))
 
 
 def test_a_fault_in_the_engine_is_raised_where_the_runs_were_asked_for(monkeypatch):
@@ -270,7 +260,7 @@ def test_a_damaged_piece_is_run_again(tmp_path, damaged):
 
 def test_pieces_are_bound_to_their_keys_and_written_at_once(tmp_path):
     """Another reader has them before the file is closed; two that changed places, or a bit, are absent."""
-    ledger, keys = Ledger(tmp_path / NAME), (key_of(1), key_of(2))
+    ledger, keys = Ledger(tmp_path / NAME), (jobs.key_of(1), jobs.key_of(2))
     for key, found in zip(keys, (b"one", b"two"), strict=True):
         ledger.put(key, found)
     other = Ledger(tmp_path / NAME)
