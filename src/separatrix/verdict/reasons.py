@@ -170,7 +170,8 @@ def whirls(ensemble: Ensemble, kick: int) -> str:
     """Return what share whirls from the worst kick, how fast, and what friction feeds it."""
     whirling = ensemble.outcome[kick] == RunOutcome.WHIRLS
     pace = float(np.median(ensemble.whirl_frequency[kick][whirling]))
-    first = f"{_share(whirling)} of the runs from {ensemble.kicks[kick]:g} m/s whirl, at {_three(pace)} Hz"
+    first = f"{_share(whirling)} of the runs from {ensemble.kicks[kick]:g} m/s whirl, at {_three(pace)} Hz "
+    first += "in their judged part"
     fed = np.maximum(ensemble.pocket_power[kick], 0.0) + np.maximum(ensemble.land_power[kick], 0.0)
     power = fed[whirling & (fed > 0.0)]
     if not power.size:
