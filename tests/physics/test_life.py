@@ -115,7 +115,7 @@ TRACK = TrackWork(
     area=1e-4,
 )  # fmt: skip
 BEARING = BearingWear(
-    tracks=(TRACK, TRACK), loads=(1.0, 1.0), ball_diameter=1e-2, ball_count=10, clearance=3e-4
+    tracks=(TRACK, TRACK), loads=(1.0, 1.0), ball_diameter=1e-2, ball_count=10, clearance=3e-4, ball_gap=4e-3
 )
 FLAT = np.ones((2, 2))
 TABLE = LifeTable(
@@ -172,6 +172,16 @@ def test_pockets_open_by_what_slides_in_them(friction, sliding):
     assert found.volume[-1, 0] == pytest.approx(volume, rel=1e-6)  # P(unstable) is 1e-9 from 0 or 1
     depth = math.sqrt(volume / 20.0 / (math.pi * 5e-3))
     assert found.clearance[-1, 0] == pytest.approx(3e-4 + 2.0 * depth, rel=1e-6)
+
+
+def test_pockets_that_meet_are_the_end_of_a_cage():
+    """A gap of 0.4 mm between balls is 50 um on either side: 20 caps of V = pi R w^2, worn by 2 W."""
+    phases = [replace(PHASE[0], bearing=replace(BEARING, ball_gap=4e-4))]
+    found = course(phases, worn(cage_wear=1e-16), 1e8)
+    ends = lives(found)
+    assert ends[0] == pytest.approx(20.0 * math.pi * 5e-3 * (5e-5) ** 2 / 2e-16, rel=0.16)  # a step
+    assert found.clearance[-1, 0] == 4e-4
+    assert causes(found, phases, worn(), ends).pocket_opened[0] == math.inf
 
 
 def test_a_land_opens_all_around_and_takes_the_critical_friction_with_it():
@@ -240,10 +250,11 @@ def test_race_friction_is_the_mean_by_load():
 
 
 def test_what_limits_the_answer_is_its_first_note():
-    """Pockets of no wear limit that open beyond the table's 3 mm; a screen shows three notes."""
+    """Pockets that open to the gap, beyond the table's 3 mm; a screen shows three notes."""
     found = _life("cage", PHASE, worn(cage_wear=1e-12), {}, 1.0, 1e9, None, ["another"])
-    beyond = "In 100 % of the draws the pockets open beyond 3 mm by the end"
-    assert [one.partition(":")[0] for one in found.notes] == [beyond, "another"]
+    ends = ("to the gap between the balls", "beyond 3 mm")
+    beyond = [f"In 100 % of the draws the pockets open {end} by the end" for end in ends]
+    assert [one.partition(":")[0] for one in found.notes] == [*beyond, "another"]
 
 
 def test_phases_of_a_duty_cycle_share_the_time():

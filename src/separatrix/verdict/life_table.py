@@ -294,6 +294,7 @@ def _bearing_wear(solution: Solution) -> BearingWear:
         ball_diameter=study.bearing.ball_diameter,
         ball_count=study.bearing.ball_count,
         clearance=solution.stated_design.pocket_clearance,
+        ball_gap=study.bearing.ball_gap,
         land=_land(solution),
     )
 
@@ -476,7 +477,8 @@ def _life(
     shares = [float(np.count_nonzero((most == i) & (life > 0.0)) / known) for i in range(len(moved))]
     at_10, at_50, at_90 = (_quantile(life, share, speed) for share in (0.1, 0.5, 0.9))
     table, land = phases[0].table, phases[0].bearing.land
-    beyond = [*_beyond(found.clearance[-1], float(table.pocket_clearance[-1]), "the pockets open")]
+    beyond = [*_meet(float(np.mean(found.clearance[-1] >= phases[0].bearing.ball_gap)))]
+    beyond += _beyond(found.clearance[-1], float(table.pocket_clearance[-1]), "the pockets open")
     notes += [NO_EXPONENT] if land and table.land_widening == 1.0 else []
     if land and table.land_widening > 1.0:
         beyond += _beyond(found.land_clearance[-1], table.land_widening * land.clearance, "the land opens")
@@ -506,6 +508,15 @@ def _life(
         complete=True,
         notes=tuple(dict.fromkeys([*beyond, *notes])),
     )
+
+
+def _meet(share: Ratio) -> Iterator[str]:
+    """A sentence on draws whose pockets have worn into one another."""
+    if share >= 0.005:
+        yield (
+            f"In {100.0 * share:.0f} % of the draws the pockets open to the gap between the balls by the "
+            "end: no bar is left between them, and the cage counts as unstable."
+        )
 
 
 def _beyond(found: Array, widest: Metre, what: str) -> Iterator[str]:

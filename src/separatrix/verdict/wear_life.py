@@ -119,6 +119,7 @@ class BearingWear:
     ball_diameter: Metre
     ball_count: int
     clearance: Metre  # of a new pocket
+    ball_gap: Metre  # between balls: pockets that have opened to it have no bar between them
     land: Land | None = None  # None without one, or without its width
 
     @property
@@ -236,7 +237,8 @@ def _state(
     depth = worn_depth(volume / (2.0 * bearing.ball_count), bearing.ball_diameter)
     gone = -np.expm1(-depth / worn.worn_depth)
     pocket = worn.pocket_friction + gone * (worn.worn_friction - worn.pocket_friction)
-    clearance, land = bearing.clearance + 2.0 * depth, np.zeros(volume.size)
+    clearance = np.minimum(bearing.clearance + 2.0 * depth, bearing.ball_gap)
+    land = np.zeros(volume.size)
     if bearing.land:
         land = bearing.land.clearance + 2.0 * land_volume / bearing.land.area
     races, unstable = list[Array](), list[Array]()
@@ -254,7 +256,7 @@ def _state(
         sliding += one.share * ((1.0 - chance) * calm + chance * whirl)
         on_land += one.share * ((1.0 - chance) * calm_land + chance * whirl_land)
         races.append(race)
-        unstable.append(chance)
+        unstable.append(np.where(clearance < bearing.ball_gap, chance, 1.0))
     worst = np.argmax(unstable, axis=0)
     each = np.arange(volume.size)
     chances, frictions = np.array(unstable)[worst, each], np.array(races)[worst, each]
@@ -313,7 +315,7 @@ def causes(found: Course, phases: Sequence[Phase], worn: Worn, life: Array) -> C
     start, worn_film, both, all_worn = criticals[found.phase[at, each], :, each].T
     moved = Cause(
         start - worn_film,
-        worn_film - both,
+        np.where(wide < phases[0].bearing.ball_gap, worn_film - both, math.inf),
         both - all_worn,
         np.log(np.maximum(pocket, LEAST) / np.maximum(worn.pocket_friction, LEAST)),
     )
