@@ -423,11 +423,14 @@ def test_the_headline_names_who_has_another_verdict_with_the_inputs_drawn():
 def test_the_headline_explains_a_critical_friction_of_zero():
     """A safety factor of 0.00 stood beside a P(stable) of 0.84, without a word."""
     row = candidate(critical=(0.0, 0.0, 0.0))
-    (said,) = deciding(Part({"effects": None, "candidate": None}, {}), [row])
-    assert said.endswith("without friction in the pockets: these do not drive them.")
+    said = verdict_sentences([row], "air")
+    words = "half the runs whirl even without friction in the pockets, which do not drive them"
+    assert f"Safety factor 0: {words}; their friction is 0.28" in said
+    known = [candidate(), Part(row.values | {"name": "PEEK"}, {})]
+    assert f"PEEK: {words}." in [*deciding(Part({"effects": None, "candidate": None}, {}), known)]
     wide = dict(zip((CRITICAL, f"{CRITICAL}_low", f"{CRITICAL}_high"), (0.254, 0.24, 0.272), strict=True))
     effects = [{"name": "wide_land", "change": "a land of 0.4 mm", **wide}]
-    _, land = deciding(Part({"effects": effects, "candidate": "Phenolic"}, {}), [row])
+    (land,) = deciding(Part({"effects": effects, "candidate": "Phenolic"}, {}), [row])
     assert "and lowers the critical friction" in land  # it read that the land does not decide
 
 

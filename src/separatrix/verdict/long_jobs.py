@@ -125,7 +125,7 @@ class Work:
                     parts[kind] += whole / load.runs
             many = Counter(kinds.values())
             left_over = {kinds[place] for place in self.loads.keys() - self._finished}
-            if not took or any(parts[kind] < KNOWN for kind in left_over if many[kind] > 1):
+            if not any(made.values()) or any(parts[kind] < KNOWN for kind in left_over if many[kind] > 1):
                 return done, math.inf  # little is known of a kind that is left
             pace, left = sum(took.values()) / sum(made.values()), [0.0]
             for place, load in self.loads.items():

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from separatrix.cage.closed_forms import drive_energy
-from separatrix.cage.ensemble import Runs, longest_duration
+from separatrix.cage.ensemble import Runs
 from separatrix.cage.moving_cage import moving_cage
 from separatrix.cage.outcome import Cause
 from separatrix.cage.rows import LANES
@@ -18,8 +18,8 @@ from separatrix.verdict import reasons
 from separatrix.verdict.judgement import Judgement, Verdict, is_clear
 from separatrix.verdict.long_jobs import Runner
 
-LONGER = 10.0
-"""Time for which it is followed, all of it, over [stability] duration."""
+LONGER, LONGEST = 10.0, 3.0
+"""Time for which it is followed, all of it: over [stability] duration, and at most, if that is longer [s]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -46,7 +46,8 @@ def long_look(
     cage, kick = moving_cage(solution, friction), settings.middle_kick
     if np.isinf(cage.land_gap) or cage.land_friction == 0.0:
         return None
-    for_long = replace(settings, duration=min(LONGER * settings.duration, longest_duration(cage)))
+    time = max(settings.duration, min(LONGER * settings.duration, LONGEST))
+    for_long = replace(settings, duration=time)
     found = runner.ensemble_of([Runs(cage, for_long, 0, LANES, whole=True)], (kick,))
     taken = (found.cause == Cause.LAND_FRICTION) & (found.end_energy > drive_energy(cage))
     return LongLook(

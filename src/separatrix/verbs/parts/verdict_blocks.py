@@ -132,7 +132,7 @@ def _safety(first: Sequence[Part]) -> str:
     criticals, frictions = span(first, "own_critical_friction"), span(first, "friction")
     lowest = min(first, key=lambda row: row.safety_factor_low if "safety_factor_low" in row else inf)
     if lowest.get("own_critical_friction") == 0.0:
-        return f"Safety factor 0: {WITHOUT_FRICTION}; they have {frictions}."
+        return f"Safety factor 0: {WITHOUT_FRICTION}; their friction is {frictions}."
     factor = show(lowest, "safety_factor")
     at = "at least " if len(first) > 1 and not factor.startswith(">") else ""
     half = f"half the runs whirl at a friction of {criticals}"
