@@ -51,24 +51,25 @@ LEAST_HELD = np.float32(0.02)
 @inlined
 def around(s, p, places, waves, turned):
     """What a ball has at its azimuth: speed of its free orbit beyond the ball set's; how races hold it."""
-    power = turned[2 * LANES :]
+    power, lanes = turned[2 * LANES :], turned.size // 4
     for j in range(places.shape[0]):
         q = places[j]
-        for l in range(LANES):
+        for l in range(lanes):
             c, n = s[TURN_COSINE + l], s[TURN_SINE + l]
             turned[l] = power[l] = q[COSINE + l] * c - q[SINE + l] * n
             turned[LANES + l] = power[LANES + l] = q[SINE + l] * c + q[COSINE + l] * n
             q[OWN_SPEED + l] = q[BY_SIZE + l]
             q[CAPACITY_SHARE + l], q[SLOPE_SHARE + l] = p[CAPACITY_MEAN + l], p[SLOPE_MEAN + l]
-        for h in range(0, waves.size, HARMONIC_NUMBERS):
-            for l in range(LANES):
+        for h in range(waves.shape[0]):
+            wave = waves[h]
+            for l in range(lanes):
                 c, n = power[l], power[LANES + l]
-                q[OWN_SPEED + l] += waves[h + ORBIT_COSINE + l] * c + waves[h + ORBIT_SINE + l] * n
-                q[CAPACITY_SHARE + l] += waves[h + CAPACITY_COSINE + l] * c + waves[h + CAPACITY_SINE + l] * n
-                q[SLOPE_SHARE + l] += waves[h + SLOPE_COSINE + l] * c + waves[h + SLOPE_SINE + l] * n
+                q[OWN_SPEED + l] += wave[ORBIT_COSINE + l] * c + wave[ORBIT_SINE + l] * n
+                q[CAPACITY_SHARE + l] += wave[CAPACITY_COSINE + l] * c + wave[CAPACITY_SINE + l] * n
+                q[SLOPE_SHARE + l] += wave[SLOPE_COSINE + l] * c + wave[SLOPE_SINE + l] * n
                 power[l] = c * turned[l] - n * turned[LANES + l]
                 power[LANES + l] = n * turned[l] + c * turned[LANES + l]
-        for l in range(LANES):
+        for l in range(lanes):
             capacity = q[CAPACITY_SHARE + l] = max(q[CAPACITY_SHARE + l], LEAST_HELD)
             slope = q[SLOPE_SHARE + l] = max(q[SLOPE_SHARE + l], LEAST_HELD)
             q[KNEE_SHARE + l] = slope / capacity
@@ -317,7 +318,8 @@ def queue(ball: int, space: bool, level: bool = False, real: type = np.float32) 
         t_balls, d_balls = t[states:].reshape(balls, one), d[states:].reshape(balls, one)
         places = np.zeros((balls, BALL_ROWS), real)
         strips = np.zeros((strips_of.shape[1], STRIP_NUMBERS), real)
-        waves, turned = np.zeros(waves_of.shape[1] * LANES, real), np.zeros(4 * LANES, real)
+        of_waves, turned = np.zeros(waves_of.shape[1] * LANES, real), np.zeros(4 * LANES, real)
+        waves = of_waves.reshape(-1, HARMONIC_NUMBERS)
         held = np.zeros((HELD_NUMBERS, size if ball == ONE_STATE else 0), real)
         first = np.zeros(held.shape[1], real)
         run, look, had = np.full(LANES, -1), np.full(LANES, -1), np.zeros(LANES)
@@ -334,7 +336,7 @@ def queue(ball: int, space: bool, level: bool = False, real: type = np.float32) 
                         next_run, live = next_run + 1, live + 1
                         take(start[n], s, l)
                         take(numbers[n], p, l)
-                        take(waves_of[n], waves, l)
+                        take(waves_of[n], of_waves, l)
                         for i in range(strips.shape[0]):
                             take(strips_of[n, i], strips[i], l)
                         for j in range(balls):
@@ -359,7 +361,8 @@ def queue(ball: int, space: bool, level: bool = False, real: type = np.float32) 
                         break
                 speed_up(s, a, p)
                 for stage in range(4):
-                    if waves.size > 0:
+                    # the second stage is at the time of the third, the last at that of the next first one
+                    if waves.shape[0] > 0 and (stage % 2 == 1 or (i == 0 and stage == 0)):
                         around(t, p, places, waves, turned)
                     rates(t, d, t_balls, d_balls, a, p, places, strips, ball, space, level, lobe_number)
                     if stage == 0:
