@@ -473,6 +473,19 @@ def test_a_kind_of_which_little_was_made_leaves_the_end_open():
     assert work.so_far(1)[1] < math.inf
 
 
+def test_a_place_that_turns_to_free_balls_takes_longer():
+    """Its first ten such runs count sixfold, and three quarters as many as of one state are expected."""
+    work = work_of(a=Load(100), b=Load(100))
+    work.spend("a", 10.0, 100)
+    work.ask("a", 60.0, free=True)
+    assert work.loads["a"].runs == 100.0 + 6.0 * 75.0
+    work.spend("a", 6.0, 60)
+    work.ask("a", 60.0, free=True)
+    assert work.loads["a"].runs == 550.0
+    work.ask("b", 120.0, free=False)
+    assert work.loads["b"].runs == 120.0
+
+
 def test_places_of_other_loads_are_another_kind():
     """A long one that ended after few runs, in no time, does not make the short ones look quick."""
     ends = work_of(long=Load(500), short=Load(100), next=Load(100))

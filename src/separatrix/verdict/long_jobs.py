@@ -62,6 +62,10 @@ UNDER_WAY = 0.7
 LEAST_LEFT = 0.2
 """Share of its load that a place under way takes at least before it ends."""
 
+FREE, FEWER = 6.0, 0.75
+"""Time of a run among free balls over that among balls of one state: 4 to 8 on three shipped bearings; and
+how many of them are made, over those of one state: a search begins where that ended."""
+
 KNOWN = 0.1
 """Part of the load of one place that is made of each kind before the end is expected."""
 
@@ -83,8 +87,18 @@ class Work:
 
     def __init__(self) -> None:
         self._lock, self.loads = threading.Lock(), dict[Hashable, Load]()
-        self._kept, self._finished = set[Hashable](), set[Hashable]()
+        self._kept, self._finished, self._free = set[Hashable](), set[Hashable](), set[Hashable]()
         self._spent: dict[Hashable, tuple[Second, float]] = {}
+
+    def ask(self, place: Hashable, runs: float, *, free: bool) -> None:
+        """Note that a place asks for runs; that the first are among free balls says that many will be."""
+        with self._lock:
+            if place in self.loads:
+                load, (_, made) = self.loads[place], self._spent.get(place, (0.0, 0.0))
+                if free and place not in self._free:
+                    self._free.add(place)
+                    runs = max(runs, FREE * FEWER * load.runs)
+                self.loads[place] = load._replace(runs=max(load.runs, made + runs))
 
     def spend(self, place: Hashable, spent: Second, runs: float) -> None:
         """Add time that a thread worked for runs of a place."""
@@ -228,16 +242,19 @@ class Runner:
         if self.stop.is_set:
             raise Interrupted
         begun = COMPILING.clock()
+        free = any(one.cage.free_ball for one in asked)
+        runs = (FREE if free else 1.0) * len(kicks) * sum(one.runs for one in asked)
+        self._work.ask(self._place, runs, free=free)
         if self.executor is not None:
             found = self._elsewhere(self.executor.submit(run_each, asked, kicks))
-            self._work.spend(self._place, COMPILING.clock() - begun, found.outcome.size)
+            self._work.spend(self._place, COMPILING.clock() - begun, runs)
             return found
         if self._gathered is None:
             found = run_each(asked, kicks, stop=self.stop)
         else:
             evidence, spent = self._gathered.follow(pieces_of(asked, kicks))
             found = ensemble_of(asked, kicks, evidence)
-            self._work.spend(self._place, spent, found.outcome.size)
+            self._work.spend(self._place, spent, runs)
         if self.stop.is_set:  # it may have ended these runs
             raise Interrupted
         return found
