@@ -28,16 +28,13 @@ COMMAND = [sys.executable, "-m", "separatrix"]
 SMALL = """
 extends = "cryogenic-turbopump"
 title = "A small ensemble"
-
 [cage]
 ball_cage_friction = 0.1
-
 [stability]
 kicks = ["0.5 m/s"]
 runs = 4
 duration = "4 ms"
 restitution_factors = [0.3, 0.6, 0.9]
-
 [ranking]
 friction = "pin-on-disk-77K"
 materials = ["Armalon", "Meldin HTC 100"]

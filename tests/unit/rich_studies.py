@@ -10,7 +10,6 @@ inner_conformity = 0.53
 outer_conformity = 0.54
 ball_material = { elastic_modulus = "205 GPa", poisson_ratio = 0.285, density = "7650 kg/m3", name = "ours" }
 ring_material = "440C"
-
 [operation]
 inner_speed = "6000 rpm"
 axial_load = "40 N"
@@ -20,18 +19,15 @@ temperature = "20 degC"
 fluid = "vacuum"
 ramp_time = "50 ms"
 ramp_start = 0.2
-
 [film]
 race_friction = { between = [0.05, 0.1] }
 elastic_modulus = "4 GPa"
 poisson_ratio = 0.38
 thickness = ["0.4 um", "0.5 um", "0.7 um"]
 wear = { width = "0.05 mm", friction = 0.3, thickness = "0.1 um", races = "inner" }
-
 [traction]
 model = "exact"
 pressure_slip = "included"
-
 [cage]
 mass = "3.5 g"
 motion = "space"
@@ -54,19 +50,16 @@ transverse_inertia = "0.6 kg mm2"
 dynamic_unbalance = "0.1 mrad"
 gravity = "1 g0"
 added_mass = "0.1 g"
-
 [stability]
 kicks = ["0.1 m/s", "2 m/s"]
 reference_kick = "0.5 m/s"
 runs = 32
 axial_kick = 0.1
 restitution_factors = [0.1, 0.5, 0.9]
-
 [[ranking.candidates]]
 name = "Vespel SP-3"
 friction = { "vacuum" = { mean = 0.08, standard_deviation = "20 %", count = 4 }, "air, 440C" = "0.2 +- 30 %" }
 material = { elastic_modulus = "3.3 GPa", poisson_ratio = 0.4, density = "1.4 g/cm3" }
-
 [[ranking.candidates]]
 name = "Phenolic, dry"
 friction = { "vacuum" = 0.30 }
@@ -95,5 +88,4 @@ pocket_angles = ["0 deg", "31 deg", "60 deg", "91 deg", "120 deg", "151 deg",
 pocket_position_scatter = "5 um"
 ball_diameter_scatter = "1 um"
 gravity = "1 g0"
-
 [stability]{_AFTER.partition("[stability]")[2]}"""

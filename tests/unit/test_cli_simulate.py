@@ -24,7 +24,6 @@ from separatrix.verbs.parts import run_pictures
 SPACE = """
 extends = "cryogenic-turbopump"
 title = 'A cage in space & <b>"two lands"</b> </script> $1$'
-
 [cage]
 motion = "space"
 ball = "damper"
@@ -36,7 +35,6 @@ land_spacing = "10 mm"
 inner_diameter = "60 mm"
 outer_diameter = "70 mm"
 width = "14 mm"
-
 [stability]
 kicks = ["0.5 m/s"]
 tilt_kick = 1.0

@@ -156,30 +156,20 @@ def test_outcomes_are_counted_where_they_settle_or_roll():
 SMALL = """
 extends = "cryogenic-turbopump"
 title = "A small uncertain ranking"
-
 [film]
 thickness = { between = ["0.4 um", "0.6 um"] }
-
 [stability]
 kicks = ["0.5 m/s"]
 runs = 8
 duration = "2 ms"
 restitution_factors = [0.2, 0.5, 0.8]
-
 [ranking]
 environment = "air"
-
-[[ranking.candidates]]
-name = "A"
-friction = { air = { mean = 0.1, standard_deviation = 0.02, count = 4 }, vacuum = 0.15 }
-
-[[ranking.candidates]]
-name = "B"
-friction = { air = "0.3 +- 10 %" }
-
-[[ranking.candidates]]
-name = "C"
-friction = { vacuum = 0.2 }
+candidates = [
+  { name = "A", friction = { air = { mean = 0.1, standard_deviation = 0.02, count = 4 }, vacuum = 0.15 } },
+  { name = "B", friction = { air = "0.3 +- 10 %" } },
+  { name = "C", friction = { vacuum = 0.2 } },
+]
 """
 
 
