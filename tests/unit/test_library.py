@@ -48,6 +48,7 @@ Vespel SP 211 | .12 | .13 | .14 | .11
 
 OURS = """\
 title = "Our lab"
+
 [cage_material."Ours"]
 composition = "PEEK + 20 % carbon fibre"
 elastic_modulus = [
@@ -55,21 +56,26 @@ elastic_modulus = [
   { value = "6 GPa", temperature = ["285 K", "305 K"], source = "test 11", confidence = "measured" },
 ]
 poisson_ratio = { value = 0.38, temperature = ["4 K", "400 K"], source = "as PEEK", confidence = "guess" }
+
 [film."Our film"]
 elastic_modulus = { value = "2 GPa", temperature = "77 K", source = "fitted", confidence = "measured" }
 poisson_ratio = { value = 0.4, temperature = "77 K", source = "usual", confidence = "guess" }
+
 [bearing_material."Our steel"]
 elastic_modulus = { value = "213 GPa", temperature = ["70 K","400 K"], source = "sheet", confidence = "maker"}
 poisson_ratio = { value = 0.3, temperature = ["70 K", "400 K"], source = "sheet", confidence = "maker" }
 density = { value = "7670 kg/m3", temperature = ["70 K", "400 K"], source = "sheet", confidence = "maker" }
+
 [friction_table."our rig"]
 title = "Our rig"
 source = "Report 5"
 confidence = "measured; three tests each"
 temperature = "77 K"
 slip_speed = ["1 m/s", "4 m/s"]
+
 [friction_table."our rig".friction."Ours"]
 "liquid nitrogen, 440C" = { mean = 0.12, standard_deviation = 0.01, count = 3, source = "Report 6" }
+
 [friction_table."our rig".friction."Armalon"]
 "liquid nitrogen, 440C" = 0.08
 "air, 440C" = 0.2
@@ -77,10 +83,13 @@ slip_speed = ["1 m/s", "4 m/s"]
 
 STUDY = """\
 extends = "cryogenic-turbopump"
+
 [bearing]
 ball_material = "Our steel"
+
 [film]
 material = "Our film"
+
 [ranking]
 friction = "our rig"
 """
@@ -384,6 +393,7 @@ def test_a_study_beside_wrong_libraries_is_refused_for_them(tmp_path):
 SIZE_608 = """\
 title = "Size 608"
 extends = "momentum-wheel"
+
 [bearing]
 designation = "608-zz"
 inner_conformity = 0.54
