@@ -48,7 +48,6 @@ Vespel SP 211 | .12 | .13 | .14 | .11
 
 OURS = """\
 title = "Our lab"
-
 [cage_material."Ours"]
 composition = "PEEK + 20 % carbon fibre"
 elastic_modulus = [
@@ -83,13 +82,10 @@ slip_speed = ["1 m/s", "4 m/s"]
 
 STUDY = """\
 extends = "cryogenic-turbopump"
-
 [bearing]
 ball_material = "Our steel"
-
 [film]
 material = "Our film"
-
 [ranking]
 friction = "our rig"
 """
