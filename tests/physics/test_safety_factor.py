@@ -2,13 +2,14 @@
 
 import math
 from dataclasses import asdict, replace
+from functools import partial
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 import separatrix
-from separatrix import Runner, moving_cage
+from separatrix import Runner, Verdict, judge, moving_cage
 from separatrix.cage.disturbance import settings_for
 from separatrix.ground.document import Part
 from separatrix.present.quantity_text import cell, estimate, show
@@ -25,6 +26,7 @@ from separatrix.verdict.critical_friction import (
     safety_factor,
     spread,
 )
+from separatrix.verdict.judgement import judge_solution
 from separatrix.verdict.ranking import Knot, Limit, _knots, _limits
 from separatrix.verdict.stability_curve import CriticalFriction, critical_friction
 
@@ -40,6 +42,22 @@ FULL = {"model": CageModel.FULL}
 def solved(**models):
     """Chain of the shipped study with other keys of its cage."""
     return separatrix.solve(replace(SHIPPED, cage=replace(SHIPPED.cage, **models)))
+
+
+@pytest.mark.parametrize(
+    ("friction", "ball", "verdict"), [(0.55, "free", "UNSTABLE"), (0.2, "one state", "STABLE")]
+)
+def test_one_state_alone_is_not_trusted_among_uneven_orbits(friction, ball, verdict):
+    """At 0.55 all runs settle or roll with one state, and whirl among free balls; at 0.3 they settle."""
+    study = separatrix.read_study("lox-turbopump-radial")
+    (candidate,) = (one for one in study.ranking.candidates if one.name == "Meldin 7211")
+    state = separatrix.solve(study, candidate)
+    settings = replace(settings_for(study.stability, moving_cage(state, 0.0)), runs=16, kicks=(0.906,))
+    run = partial(Runner().whole_ensemble, settings=settings)
+    one_state = judge(moving_cage(state, friction), run(moving_cage(state, friction)))
+    assert one_state.verdict is Verdict.STABLE
+    found = judge_solution(state, friction, run)
+    assert (found.ball, found.verdict.name) == (ball, verdict)
 
 
 def test_the_safety_factor_is_the_ratio_of_two_frictions():

@@ -27,7 +27,15 @@ from separatrix.chain.impact_restitution import damping_for
 from separatrix.chain.solution import Solution
 from separatrix.ground.units import Array, MetrePerSecond, Ratio
 from separatrix.study.study import BallModel, StabilitySettings
-from separatrix.verdict.judgement import ENOUGH, NORMAL_95, transmitted_force, whirl_share, wilson_interval
+from separatrix.verdict.judgement import (
+    ENOUGH,
+    NORMAL_95,
+    UNEVEN,
+    has_uneven_orbits,
+    transmitted_force,
+    whirl_share,
+    wilson_interval,
+)
 from separatrix.verdict.long_jobs import Runner
 from separatrix.verdict.reasons import ball_words
 
@@ -421,9 +429,10 @@ def cage_limit(
 ) -> CageLimit:
     """Critical friction of a solved study's cage, by the ball that its model asks for.
 
-    With the ball "auto", by balls of one state, which may be up to a quarter too low but not too high; by
-    free balls where the friction of a whirl there exceeds a quarter of what the races hold, unless the
-    critical friction is `AMPLE` times the `highest` friction that it will be compared with.
+    With the ball "auto", by balls of one state, which may be up to a quarter too low but, with even orbits,
+    not too high; by free balls where the friction of a whirl there exceeds a quarter of what the races hold,
+    or orbits are uneven, unless the critical friction is `AMPLE` times the `highest` friction that it will be
+    compared with, `UNEVEN` times more with uneven orbits.
     `change` has other values of fields of the cage.
     """
 
@@ -434,7 +443,10 @@ def cage_limit(
     if solution.design.ball_model is not BallModel.AUTO:
         return found
     at = found.own_critical_friction
-    if at is None or at >= AMPLE * highest or whirl_share(cage(at), transmitted_force(solution)) <= ENOUGH:
+    is_uneven = has_uneven_orbits(cage(0.0))
+    if at is None or at >= AMPLE * (UNEVEN if is_uneven else 1.0) * highest:
+        return found
+    if not is_uneven and whirl_share(cage(at), transmitted_force(solution)) <= ENOUGH:
         return found
     return _limit(cage(0.0, BallModel.FREE), settings, runner, at)
 

@@ -249,12 +249,14 @@ class DrawnBearings:
     ) -> Ensemble:
         """Run the bearings at these places once from each kick [m/s], among such balls as the central cage.
 
+        Their frictions are as many times those drawn as its own is the central one.
         `Interrupted` if the work was interrupted before the last run.
         """
         asked, ball = [], None if central.free_ball is None else BallModel.FREE
+        more = central.ball_cage_friction / (self.stated[case].mean or 1.0)
         for place in places:
             own = self.solved[place][case.candidate]
-            cage = moving_cage(own, float(self.friction[case][place]), ball)
+            cage = moving_cage(own, min(more * float(self.friction[case][place]), FRICTION_LIMIT), ball)
             asked.append(Runs(cage, own.study.stability, self.runs[place], 1))
         return runner.ensemble_of(asked, kicks)
 

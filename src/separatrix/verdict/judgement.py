@@ -16,6 +16,7 @@ from separatrix.cage.closed_forms import drift_rate_law, drifts, drive_energy, f
 from separatrix.cage.moving_cage import MovingCage, moving_cage
 from separatrix.cage.outcome import Cause, RunOutcome
 from separatrix.chain.pocket_friction import REFERENCE
+from separatrix.friction.friction_file import FRICTION_LIMIT
 from separatrix.ground.units import (
     Array,
     Hertz,
@@ -342,6 +343,10 @@ def is_clear(count: int, runs: int) -> bool:
     return is_mostly(count, runs) and count / runs >= CLEAR
 
 
+UNEVEN: Ratio = 1.5
+"""Friction over its own at which a cage whose balls have uneven orbits must be stable, too, with one state:
+under radial load its critical friction was 0.85 to 1.21 of that among free balls (six bearings)."""
+
 ENOUGH: Ratio = 0.25
 """Friction of a sustained whirl over what the races hold, up to which the ball of one state decides alone."""
 
@@ -362,21 +367,32 @@ def whirl_share(cage: MovingCage, capacity: Newton) -> Ratio:
     return cage.ball_cage_friction * speed * math.sqrt(cage.ball_cage_stiffness * felt_mass(cage)) / capacity
 
 
+def has_uneven_orbits(cage: MovingCage) -> bool:
+    """Whether a radial load, a moment or a tilt makes the orbital speeds of the balls uneven."""
+    return len(cage.orbital_cosines) > 0
+
+
 def judge_by_ball(
     solution: Solution, friction: Ratio, judged: Callable[[MovingCage], Judgement]
 ) -> Judgement:
     """Judge the cage of a solved study at a friction by the ball that decides: see `judge_solution`."""
     level, cage = solution.design.ball_model, moving_cage(solution, friction)
+    is_uneven = level is BallModel.AUTO and has_uneven_orbits(cage)
+    more = moving_cage(solution, min(UNEVEN * friction, FRICTION_LIMIT)) if is_uneven else None
+    is_sure = more is None or judged(more).verdict is Verdict.STABLE
     found, share = judged(cage), whirl_share(cage, transmitted_force(solution))
     if level is not BallModel.AUTO:
         return found
     part = f"{100.0 * share:.2g} % of what the races hold"
     because = f"Friction of a whirl reaches {part}"
-    if share <= ENOUGH:
+    if share <= ENOUGH and not is_uneven:
         because += f": below {100.0 * ENOUGH:g} % one state is enough."
-    elif found.verdict is Verdict.STABLE:
+    elif found.verdict is Verdict.STABLE and is_sure:
         because = "A cage that is stable with one state is stable among free balls."
+        if is_uneven:
+            because = f"Stable with one state at {UNEVEN:g} times its friction, it is so among free balls."
     else:
+        because = "The balls have uneven orbits" if is_uneven else because
         because += f"; with one state the verdict is {found.verdict.name}."
         found = judged(moving_cage(solution, friction, BallModel.FREE))
     return replace(found, ball_reason=because)
@@ -386,7 +402,8 @@ def judge_solution(solution: Solution, friction: Ratio, run: Callable[[MovingCag
     """Judge the cage of a solved study at a friction by the ball that decides.
 
     That is the one of the study, or one state until free balls have to be asked. The critical friction with
-    one state is 0.74 to 1.00 of that among free balls (ten bearings, the worse of two speeds): its STABLE is
+    one state is 0.74 to 1.00 of that among free balls (ten bearings without radial load, the worse of two
+    speeds; with one see `UNEVEN`): its STABLE is
     safe, its UNSTABLE may be too early. They agree while the friction of a sustained whirl stays below a
     quarter of what the races hold. `run` makes the runs of a cage, always with the same settings.
     """
