@@ -180,8 +180,7 @@ def test_pockets_that_meet_are_the_end_of_a_cage():
     found = course(phases, worn(cage_wear=1e-16), 1e8)
     ends = lives(found)
     assert ends[0] == pytest.approx(20.0 * math.pi * 5e-3 * (5e-5) ** 2 / 2e-16, rel=0.16)  # a step
-    assert found.clearance[-1, 0] == 4e-4
-    assert causes(found, phases, worn(), ends).pocket_opened[0] == math.inf
+    assert (found.clearance[-1, 0], causes(found, phases, worn(), ends).pocket_opened[0]) == (4e-4, math.inf)
 
 
 def test_a_land_opens_all_around_and_takes_the_critical_friction_with_it():

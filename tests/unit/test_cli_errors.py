@@ -218,10 +218,8 @@ def test_the_size_of_a_regular_file_is_told_and_all_else_refused(folder):
 
 BASE = """
 extends = "cryogenic-turbopump"
-
 [kinematics]
 model = "outer race control"
-
 [stability]
 kicks = ["0.5 m/s"]
 runs = 4

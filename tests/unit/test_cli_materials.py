@@ -10,7 +10,6 @@ from separatrix.ground.errors import InputError
 
 OURS = """\
 title = "Our lab"
-
 [film."Our film"]
 remark = "Batch 7."
 elastic_modulus = [

@@ -149,7 +149,7 @@ def computed(
             if stop.finished is None:
                 raise
             record, is_complete = stop.finished, False
-    taken = 0 if ledger is None else ledger.taken
+    taken = ledger.taken if ledger is not None and ledger.goes_on else 0  # else by this call, twice asked
     return Computed(record=record, study=study, options=asked, is_complete=is_complete, runs_taken=taken)
 
 
