@@ -47,8 +47,7 @@ def solved(**models):
 def test_one_state_alone_is_not_trusted_among_uneven_orbits():
     """At 0.55 all runs settle or roll with one state, and whirl among free balls; 1.5 times 0.2 is calm."""
     study = separatrix.read_study("lox-turbopump-radial")
-    (candidate,) = (one for one in study.ranking.candidates if one.name == "Meldin 7211")
-    state = separatrix.solve(study, candidate)
+    state = separatrix.solve(study, next(c for c in study.ranking.candidates if c.name == "Meldin 7211"))
     settings = replace(settings_for(study.stability, moving_cage(state, 0.0)), runs=16, kicks=(0.906,))
     run = partial(Runner().whole_ensemble, settings=settings)
     for friction, ball, verdict in ((0.55, "free", Verdict.UNSTABLE), (0.2, "one state", Verdict.STABLE)):

@@ -138,20 +138,17 @@ def seen_on_a_land(land_friction: float) -> tuple[Judgement, LongLook | None]:
 def test_a_land_that_takes_over_a_calm_cage_keeps_it_from_stable():
     """At a land friction of 0.4, 15 of 16 runs settle within 0.1 s, and most whirl within 1 s."""
     judged, look = seen_on_a_land(0.4)
-    assert look is not None
     assert (judged.verdict, look.runs) == (Verdict.STABLE, 16)
     assert look.duration == pytest.approx(1.0, rel=0.01)  # to the end of a look, of 2 ms
     assert look.on_land > 8  # 12
     assert 0.5 < look.largest_land_force < 5.0  # N, 1.6; the weight is 0.3 mN
-    longer = seen_for_longer(judged, look)
-    assert longer.verdict is Verdict.UNDECIDED
+    assert (longer := seen_for_longer(judged, look)).verdict is Verdict.UNDECIDED
     assert f"{look.on_land} of 16 runs end whirling round the land" in longer.reason
     unstable = replace(judged, verdict=Verdict.UNSTABLE)
     assert seen_for_longer(unstable, look) == unstable
     assert seen_for_longer(judged, replace(look, on_land=1)) == judged  # less than a tenth
     # at 0.05 none whirls; without friction, as without a land, nothing could drive it
     judged, look = seen_on_a_land(0.05)
-    assert look is not None
     assert (look.on_land, look.largest_land_force) == (0, 0.0)
     assert seen_for_longer(judged, look) == judged
     assert seen_on_a_land(0.0)[1] is None

@@ -17,6 +17,7 @@ from separatrix.cage.closed_forms import drive_energy
 from separatrix.chain.race_traction import BallTraction, FreeBall, SlipField
 from separatrix.verdict import judgement
 from separatrix.verdict.judgement import ENDS, KickCount, Verdict, judge, wilson_interval
+from separatrix.verdict.ranking import in_a_window
 from separatrix.verdict.ranking_records import meet, ranks
 from separatrix.verdict.reasons import CageMotion, force_limit
 
@@ -484,3 +485,11 @@ def test_the_order_of_the_candidates_does_not_matter(given_ones, random):
     values = [t[0] for t in given_ones]
     if len(set(values)) == len(values):
         assert shuffled == [ranks_of(given_ones)[i] for i in order]
+
+
+def test_a_cage_that_is_stable_above_its_critical_friction_is_undecided():
+    """A gyro's cage settles at 0.351, and whirls at 0.141 to 0.3: STABLE stood beside a factor of 0.40."""
+    calm, safety = judge(GUIDED, ensemble(many(64))), {"own_critical_friction": 0.141}
+    found = {high: in_a_window(calm, safety | {"safety_factor_high": high}) for high in (None, 1.0, 0.45)}
+    assert (found[None], found[1.0], found[0.45].verdict) == (calm, calm, UNDECIDED)
+    assert "half the runs whirl at a friction of 0.141: it is stable in a window" in found[0.45].reason

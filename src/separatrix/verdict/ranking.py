@@ -14,7 +14,7 @@ from separatrix.cage.moving_cage import MovingCage, moving_cage
 from separatrix.cage.rows import LANES
 from separatrix.chain.impact_restitution import SOLID_LUBRICATION_LIMIT
 from separatrix.chain.solution import Solution, solve
-from separatrix.ground.units import Ratio
+from separatrix.ground.units import Ratio, format_number
 from separatrix.study.candidates import (
     other_than_candidates,
     ranking_question,
@@ -41,7 +41,7 @@ from separatrix.verdict.critical_friction import (
 )
 from separatrix.verdict.draws import Case, DrawnBearings, drawn_bearings
 from separatrix.verdict.effects import Change, Effect, effects_on
-from separatrix.verdict.judgement import judge_solution, transmitted_force
+from separatrix.verdict.judgement import Judgement, Verdict, judge_solution, transmitted_force
 from separatrix.verdict.long_jobs import Load, Runner, scattered
 from separatrix.verdict.long_look import long_look, seen_for_longer
 from separatrix.verdict.ranking_records import (
@@ -431,7 +431,7 @@ def _row(
     if broken := not_finite(judgement):
         return NotFinished(**values, reason=broken)
     judgement = seen_for_longer(judgement, found.get(question.longer) if question.longer else None)
-    values["judgement"] = judgement
+    values["judgement"] = judgement = in_a_window(judgement, values)
     values["over_inputs"] = found.get(Case(name)) if environment == question.environment else None
     threshold = _threshold(question, found, pocket, friction)
     by_paper = Asked(pocket, friction.mean, True)
@@ -450,6 +450,16 @@ def _row(
         paper_verdict=None if papers is None else papers.verdict,
         paper_probability_stable=None if papers is None else papers.probability_stable,
     )
+
+
+def in_a_window(judgement: Judgement, safety: Mapping[str, Any]) -> Judgement:
+    """The judgement; UNDECIDED of a stable cage that less friction makes whirl, beyond their scatter."""
+    high = safety.get("safety_factor_high")
+    if judgement.verdict is not Verdict.STABLE or high is None or high >= 1.0:
+        return judgement
+    lower = f"half the runs whirl at a friction of {format_number(safety['own_critical_friction'], 3)}"
+    reason = f"{judgement.reason} But {lower}: it is stable in a window, which a friction that falls leaves."
+    return replace(judgement, verdict=Verdict.UNDECIDED, reason=reason)
 
 
 def _safety(limit: CageLimit | None, friction: MeanFriction, spread: float) -> dict[str, Any]:
