@@ -144,8 +144,7 @@ def test_a_land_that_takes_over_a_calm_cage_keeps_it_from_stable():
     assert 0.5 < look.largest_land_force < 5.0  # N, 1.6; the weight is 0.3 mN
     assert (longer := seen_for_longer(judged, look)).verdict is Verdict.UNDECIDED
     assert f"{look.on_land} of 16 runs end whirling round the land" in longer.reason
-    unstable = replace(judged, verdict=Verdict.UNSTABLE)
-    assert seen_for_longer(unstable, look) == unstable
+    assert seen_for_longer(unstable := replace(judged, verdict=Verdict.UNSTABLE), look) == unstable
     assert seen_for_longer(judged, replace(look, on_land=1)) == judged  # less than a tenth
     # at 0.05 none whirls; without friction, as without a land, nothing could drive it
     judged, look = seen_on_a_land(0.05)

@@ -262,8 +262,7 @@ def test_the_linear_law_is_that_of_the_physics():
     for eta, friction in zip(law.x[1:-1:20], law.y[1:-1:20], strict=True):
         assert restitution_factor(friction / 2.0) == pytest.approx(eta, rel=1e-12)
     # of balls of inertia it is not in proportion to the damping ratio: a 6204 has more at 0.25 than at 0
-    limits = [(0.0, 0.132), (0.125, 0.196), (0.25, 0.215), (0.5, 0.185), (0.75, 0.094)]
-    law = linear_law(limits)
+    law = linear_law(limits := [(0.0, 0.132), (0.125, 0.196), (0.25, 0.215), (0.5, 0.185), (0.75, 0.094)])
     drawn = dict(zip(law.x, law.y, strict=True))
     assert [drawn[eta] for eta, _ in limits] == pytest.approx([at for _, at in limits], rel=1e-12)  # rounding
 
@@ -353,9 +352,8 @@ def test_an_overdamped_bearing_is_not_the_curve_at_its_restitution_factor(eta, i
 @pytest.mark.parametrize(("side", "most"), [("BELOW", "fewer"), ("ABOVE", "more")])
 def test_a_cage_without_a_critical_friction_has_its_friction_placed(side, most):
     """A cage of 0.08 whirls at no friction up to 1, and the answer on it had no word of 0.08."""
-    study = {"cage": {"ball_cage_friction": {"value": 0.08}}}
-    found = {"here": {"side": side}, "study": study, "cage": {"ball_cage_friction": 0.08}}
-    (said,) = friction_words(part_of({**found, "units": {}}))
+    found = {"here": {"side": side}, "cage": {"ball_cage_friction": 0.08}, "units": {}}
+    (said,) = friction_words(part_of(found | {"study": {"cage": {"ball_cage_friction": {"value": 0.08}}}}))
     assert said == f"At the cage's friction, 0.08, as at any other, {most} than half of the runs whirl."
 
 

@@ -477,9 +477,8 @@ def test_a_place_that_turns_to_free_balls_takes_longer():
     """Its first ten such runs count sixfold, and three quarters as many as of one state are expected."""
     work = work_of(a=Load(100), b=Load(100))
     work.spend("a", 10.0, 100)
-    work.ask("a", 60.0, free=True)
-    work.ask("a", 60.0, free=True)
-    work.ask("b", 120.0, free=False)
+    for place, runs in (("a", 60.0), ("a", 60.0), ("b", 120.0)):
+        work.ask(place, runs, free=place == "a")
     assert [work.loads[place].runs for place in "ab"] == [100.0 + 6.0 * 75.0, 120.0]
 
 
