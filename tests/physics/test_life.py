@@ -179,7 +179,7 @@ def test_pockets_that_meet_are_the_end_of_a_cage():
     phases = [replace(PHASE[0], bearing=replace(BEARING, ball_gap=4e-4))]
     found = course(phases, worn(cage_wear=1e-16), 1e8)
     ends = lives(found)
-    assert ends[0] == pytest.approx(20.0 * math.pi * 5e-3 * (5e-5) ** 2 / 2e-16, rel=0.16)  # a step
+    assert ends[0] == pytest.approx(20.0 * math.pi * 5e-3 * (5e-5) ** 2 / 2e-16, rel=0.16)  # 10^(1/16)
     assert (found.clearance[-1, 0], causes(found, phases, worn(), ends).pocket_opened[0]) == (4e-4, math.inf)
 
 

@@ -86,7 +86,7 @@ def test_the_first_tenth_of_scattered_places_resembles_all():
     times = [100.0 ** (i / 99.0) for i in range(100)]
     mean = sum(times) / 100
     assert sum(times[:10]) / 10 < mean / 10.0
-    assert sum(jobs.scattered(times)[:10]) / 10 == pytest.approx(mean, rel=0.3)
+    assert 0.7 < sum(jobs.scattered(times)[:10]) / 10 / mean < 1.3  # 0.77; the first ten in order: 0.06
     assert sorted(jobs.scattered(times)) == times
 
 

@@ -19,7 +19,8 @@ from separatrix.verdict.judgement import Judgement, Verdict, is_clear
 from separatrix.verdict.long_jobs import Runner
 
 LONGER, LONGEST = 10.0, 3.0
-"""Time for which it is followed, all of it: over [stability] duration, and at most, if that is longer [s]."""
+"""Time for which it is followed, all of it: so many times [stability] duration, but no more than this [s],
+unless `duration` itself is longer."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -63,7 +64,7 @@ def long_look(
 
 def seen_for_longer(judgement: Judgement, look: LongLook | None) -> Judgement:
     """The judgement; UNDECIDED of a stable cage whose land takes over more than a tenth of long runs."""
-    is_taken = look is not None and not is_clear(look.runs - look.on_land, look.runs)
-    if look is None or not is_taken or judgement.verdict is not Verdict.STABLE:
+    is_calm = look is None or is_clear(look.runs - look.on_land, look.runs)
+    if look is None or is_calm or judgement.verdict is not Verdict.STABLE:
         return judgement
     return replace(judgement, verdict=Verdict.UNDECIDED, reason=look.reason)
