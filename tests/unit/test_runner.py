@@ -474,12 +474,16 @@ def test_a_kind_of_which_little_was_made_leaves_the_end_open():
 
 
 def test_a_place_that_turns_to_free_balls_takes_longer():
-    """Its first ten such runs count sixfold, and three quarters as many as of one state are expected."""
-    work = work_of(a=Load(100), b=Load(100))
-    work.spend("a", 10.0, 100)
-    for place, runs in (("a", 60.0), ("a", 60.0), ("b", 120.0)):
-        work.ask(place, runs, free=place == "a")
-    assert [work.loads[place].runs for place in "ab"] == [100.0 + 6.0 * 75.0, 120.0]
+    """Its first ten such runs count sixfold, and three quarters as many as of one state are expected.
+
+    Of a place for which they were foreseen no more are.
+    """
+    work = work_of(a=Load(100), b=Load(100), foreseen=Load(550, has_free=True))
+    for place in ("a", "foreseen"):
+        work.spend(place, 10.0, 100)
+    for place, runs, dear in (("a", 60.0, 6.0), ("a", 60.0, 6.0), ("b", 120.0, 1.0), ("foreseen", 60.0, 6.0)):
+        work.ask(place, runs, dear)
+    assert [work.loads[place].runs for place in work.loads] == [100.0 + 6.0 * 75.0, 120.0, 550.0]
 
 
 def test_places_of_other_loads_are_another_kind():

@@ -37,8 +37,8 @@ def compute(study: Study, _: NoOptions, runner: Runner) -> StabilityAnswer:
 
 def page(answer: Part) -> Page:
     """Return the page of `stability`."""
-    below = "disturbances decay, but the cage drifts" if answer.drifts else "the cage is stable"
-    caption = f"Critical friction against restitution factor: below the band {below}, above it unstable."
+    below = "runs settle or roll" + ", but the cage drifts" * answer.drifts
+    caption = f"Critical friction against restitution factor: below the band {below}, above it they whirl."
     friction = ("Pocket friction", pocket_friction(answer) or "not stated")
     return page_of(
         answer,
@@ -84,12 +84,11 @@ def friction_words(answer: Part) -> Iterator[str]:
         yield f"At the cage's friction, {words}, as at any other, {most} of the runs whirl."
         return
     low, high = here.get("critical_friction_low"), here.get("critical_friction_high")
-    side = "within the band in which the disturbance decides: it is undecided"
+    side = "within the band, in which the disturbance decides"
     if low is not None and friction < low:
-        side = "below the band: disturbances decay"
-        side += ", but the cage drifts and is not stable" if answer.drifts else ", the cage is stable"
+        side = "below the band" + ", but the cage drifts and is not stable" * answer.drifts
     elif high is not None and friction > high:
-        side = "above the band: the cage is unstable"
+        side = "above the band"
     yield f"The cage's friction, {words}, is {side}."
 
 

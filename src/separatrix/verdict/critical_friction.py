@@ -36,7 +36,7 @@ from separatrix.verdict.judgement import (
     whirl_share,
     wilson_interval,
 )
-from separatrix.verdict.long_jobs import Runner
+from separatrix.verdict.long_jobs import FEWER, Runner, cost
 from separatrix.verdict.reasons import ball_words
 
 UNRESOLVED = (
@@ -440,15 +440,28 @@ def cage_limit(
         return replace(moving_cage(solution, friction, ball), **(change or {}))
 
     found = _limit(cage(0.0), settings, runner)
-    if solution.design.ball_model is not BallModel.AUTO:
-        return found
     at = found.own_critical_friction
-    is_uneven = has_uneven_orbits(cage(0.0))
-    if at is None or at >= AMPLE * (UNEVEN if is_uneven else 1.0) * highest:
-        return found
-    if not is_uneven and whirl_share(cage(at), transmitted_force(solution)) <= ENOUGH:
+    if at is None or not asks_free(solution, cage(at), highest):
         return found
     return _limit(cage(0.0, BallModel.FREE), settings, runner, at)
+
+
+def asks_free(solution: Solution, cage: MovingCage, highest: Ratio) -> bool:
+    """Whether free balls decide, for a cage whose friction is its critical one with balls of one state."""
+    is_uneven, at = has_uneven_orbits(cage), cage.ball_cage_friction
+    if solution.design.ball_model is not BallModel.AUTO:
+        return False
+    if at >= AMPLE * (UNEVEN if is_uneven else 1.0) * highest:
+        return False
+    return is_uneven or whirl_share(cage, transmitted_force(solution)) > ENOUGH
+
+
+def free_work(solution: Solution, settings: StabilitySettings, highest: Ratio) -> float:
+    """Work among free balls over that with balls of one state, as far as it can be foreseen [-]."""
+    estimate = hand_estimate(moving_cage(solution, 0.0))
+    if not asks_free(solution, moving_cage(solution, estimate), highest):
+        return 0.0
+    return FEWER * cost(moving_cage(solution, estimate, BallModel.FREE), settings.middle_kick)
 
 
 def _limit(

@@ -13,7 +13,7 @@ import zlib
 from collections import Counter, defaultdict
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor, Future, ThreadPoolExecutor, wait
-from dataclasses import fields
+from dataclasses import fields, replace
 from functools import cache
 from pathlib import Path
 from queue import Empty, SimpleQueue
@@ -25,6 +25,7 @@ import separatrix
 from separatrix.cage.disturbance import settings_for
 from separatrix.cage.ensemble import Ensemble, Runs, Stop, ensemble_of, pieces_of
 from separatrix.cage.moving_cage import MovingCage
+from separatrix.cage.numbers import step_length
 from separatrix.ground.compiling import COMPILING
 from separatrix.ground.errors import InputError
 from separatrix.ground.units import MetrePerSecond, Ratio, Second
@@ -62,12 +63,19 @@ UNDER_WAY = 0.7
 LEAST_LEFT = 0.2
 """Share of its load that a place under way takes at least before it ends."""
 
-FREE, FEWER = 6.0, 0.75
-"""Time of a run among free balls over that among balls of one state: 4 to 8 on three shipped bearings; and
-how many of them are made, over those of one state: a search begins where that ended."""
+FREE, FEWER = 2.3, 0.75
+"""Time of a step among free balls over that among balls of one state: 1.4 to 3.9 (seven bearings); and how
+many runs are made, over those of one state: a search begins where that ended."""
 
 KNOWN = 0.1
 """Part of the load of one place that is made of each kind before the end is expected."""
+
+
+def cost(cage: MovingCage, kick: MetrePerSecond) -> float:
+    """Time of a run over that of a cage among balls of one state [-]: free balls need shorter steps."""
+    if cage.free_ball is None:
+        return 1.0
+    return FREE * step_length(replace(cage, free_ball=None), kick) / step_length(cage, kick)
 
 
 class Load(NamedTuple):
@@ -75,6 +83,7 @@ class Load(NamedTuple):
 
     runs: float = 1.0  # of so many; or just one piece of work
     dear: float = 1.0  # time of a run beside that of others
+    has_free: bool = False  # whether `runs` counts those among free balls, each for as many as it takes
 
 
 class Work:
@@ -87,18 +96,18 @@ class Work:
 
     def __init__(self) -> None:
         self._lock, self.loads = threading.Lock(), dict[Hashable, Load]()
-        self._kept, self._finished, self._free = set[Hashable](), set[Hashable](), set[Hashable]()
+        self._kept, self._finished = set[Hashable](), set[Hashable]()
         self._spent: dict[Hashable, tuple[Second, float]] = {}
 
-    def ask(self, place: Hashable, runs: float, *, free: bool) -> None:
-        """Note that a place asks for runs; that the first are among free balls says that many will be."""
+    def ask(self, place: Hashable, runs: float, dear: float) -> None:
+        """Note that a place asks for runs; the first dear ones, among free balls, say that many will be."""
         with self._lock:
             if place in self.loads:
                 load, (_, made) = self.loads[place], self._spent.get(place, (0.0, 0.0))
-                if free and place not in self._free:
-                    self._free.add(place)
-                    runs = max(runs, FREE * FEWER * load.runs)
-                self.loads[place] = load._replace(runs=max(load.runs, made + runs))
+                if dear > 1.0 and not load.has_free:
+                    runs = max(runs, dear * FEWER * load.runs)
+                is_free = load.has_free or dear > 1.0
+                self.loads[place] = load._replace(runs=max(load.runs, made + runs), has_free=is_free)
 
     def spend(self, place: Hashable, spent: Second, runs: float) -> None:
         """Add time that a thread worked for runs of a place."""
@@ -242,9 +251,10 @@ class Runner:
         if self.stop.is_set:
             raise Interrupted
         begun = COMPILING.clock()
-        free = any(one.cage.free_ball for one in asked)
-        runs = (FREE if free else 1.0) * len(kicks) * sum(one.runs for one in asked)
-        self._work.ask(self._place, runs, free=free)
+        cage, count = asked[0].cage, len(kicks) * sum(one.runs for one in asked)
+        dear = cost(cage, kicks[0])
+        runs = dear * count
+        self._work.ask(self._place, runs, dear)
         if self.executor is not None:
             found = self._elsewhere(self.executor.submit(run_each, asked, kicks))
             self._work.spend(self._place, COMPILING.clock() - begun, runs)

@@ -36,6 +36,7 @@ from separatrix.verdict.beyond_models import (
 from separatrix.verdict.critical_friction import (
     CageLimit,
     cage_limit,
+    free_work,
     safety_factor,
     spread,
 )
@@ -335,12 +336,15 @@ def _load(question: _Question, piece: Piece) -> Load:
     if isinstance(piece, Knot):
         eta = piece.restitution_factor
         return expected_load(question.settings, eta, band=eta is None)
-    kicks = len(question.settings.kicks)
+    kicks, settings = len(question.settings.kicks), question.settings
     if isinstance(piece, Longer):
         return Load(LANES, dear=20.0)
-    if isinstance(piece, Limit):
-        return Load(kicks * expected_load(question.settings, band=False).runs, dear=3.0)
-    return Load(kicks * question.settings.runs)
+    if isinstance(piece, Case) or (isinstance(piece, Asked) and piece.is_paper):
+        return Load(kicks * settings.runs)
+    highest = max(key.friction for key in question.keys) if isinstance(piece, Limit) else piece.friction
+    free = free_work(question.cages[piece.pocket], settings, highest)
+    runs = expected_load(settings, band=False).runs if isinstance(piece, Limit) else settings.runs
+    return Load(kicks * runs * (1.0 + free), 3.0 if isinstance(piece, Limit) else 1.0, free > 0.0)
 
 
 def _computed(question: _Question, piece: Piece) -> object:
