@@ -10,7 +10,7 @@ from test_reference_tables import missing
 from separatrix import InputError, read_study, restitution_factor, wilson_interval
 from separatrix.ground.compiling import COMPILING
 from separatrix.ground.document import Part, part_of
-from separatrix.ground.quantity import Estimate, Quantity, alone
+from separatrix.ground.quantity import Estimate, Quantity, alone, in_column
 from separatrix.present.blocks import Level, Picture
 from separatrix.present.draw import draw_panel
 from separatrix.present.figure import Across, Trace
@@ -319,6 +319,11 @@ def candidate(verdict="STABLE", critical=(0.248, 0.231, 0.269), friction=0.28):
             (0.143, 0.121, 0.204),
             "is not enough for Phenolic. {}0.143 (0.121 to 0.204).",
         ),
+        (
+            candidate(critical=(None, 1.0, None)),
+            (0.77, 0.72, 0.81),
+            "raises the critical friction. {}0.770 (0.720 to 0.810).",
+        ),
         (candidate(), (0.56, 0.53, 0.62), "and lowers the critical friction. {}0.560 (0.530 to 0.620)."),
         (candidate(), (0.22, 0.2, 0.24), "does not decide. {}0.220 (0.200 to 0.240)."),
         (candidate(), (0.28, 0.26, 0.3), "does not decide. {}0.280 (0.260 to 0.300)."),
@@ -390,7 +395,10 @@ def test_the_headline_states_the_heat_of_cages_that_rub_on_their_land(others, wh
 
 
 def test_no_digits_stand_that_say_nothing():
-    """104 (104 to 104) m/s, and 14.89452 deg of a clearance of 8 um; a stated angle is as it is written."""
+    """104 (104 to 104) m/s, 14.89452 deg of a clearance of 8 um, 5.7e-22 deg; a stated angle is as written."""
+    noise = Quantity(label="", digits=4, rounding=1e-12)
+    assert alone(1e-23, noise, "rad") == "0 deg"
+    assert in_column([1e-23, -1e-23, 0.2], noise, "rad")[0] == ["0.00", "0.00", "11.46"]
     for ends, words in (((104.0, 104.2), "104 m/s"), ((103.0, 105.0), "104 (103 to 105) m/s")):
         assert alone(Estimate(104.1, *ends), Quantity(label="", digits=3), "m/s") == words
     entry = {"value": 0.2599584, "unit": "rad", "origin": "derived, from radial_clearance"}

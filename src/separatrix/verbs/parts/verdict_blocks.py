@@ -172,7 +172,8 @@ def deciding(answer: Part, rows: Sequence[Part]) -> Iterator[str]:
         elif wide_at_most >= own.own_critical_friction_low:
             yield f"The land stops the cage before its pockets do ({both}) but does not decide. {words}."
         else:
-            steadies = "is not enough for " + ", ".join(whirling) if whirling else "keeps it stable"
+            steadies = "keeps it stable" if above else "raises the critical friction"
+            steadies = "is not enough for " + ", ".join(whirling) if whirling else steadies
             whose = f", less than the friction of {', '.join(above)}" if above else ""
             yield f"The land stops the cage before its pockets do ({both}), which {steadies}. {words}{whose}."
     elif best.get("land_clearance") is not None and any(row.verdict != "STABLE" for row in known):
