@@ -343,7 +343,7 @@ def _not_thin(thickness: Metre, semi_minor: Metre) -> tuple[str, ...]:
         return ()
     return (
         f"The film of {format_quantity(thickness, 'm', 3)} is {thickness / semi_minor:.3g} of the semi-minor "
-        f"axis. Up to {THIN:g} strips with a film in series are within 1.2 % of a layer; beyond, the slope may "
+        f"axis. Up to {THIN:g} a film in series is within 1.2 % of a layer; beyond, the slope may "
         'be further off. [traction] model = "exact" computes an even film as a layer.',
     )
 
