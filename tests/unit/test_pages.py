@@ -289,6 +289,14 @@ def test_every_number_of_a_page_is_the_documents(verb, answers, monkeypatch):
     assert {one for one in found if one is not None} <= known
 
 
+def test_a_ranking_that_was_interrupted_early_has_no_heading_without_a_table(folder):
+    """The heading of the evidence came before the first note."""
+    document = saved(folder, "rank")
+    for row in [row for one in document["environments"] for row in one["materials"]]:
+        row["verdict"] = None
+    assert "Evidence:" not in text(verb_named("rank").page(part_of(document)))
+
+
 def test_a_life_names_the_state_of_the_clearances_that_open(folder):
     """They are those that the study states: of a cage at rest they were headed "as it runs"."""
     document = saved(folder, "life")

@@ -77,7 +77,8 @@ def page(answer: Part) -> Page:
         *by_paper(answer, known, apart),
         *over_inputs(answer, rows),
         *pictures(answer, own),
-        Heading(q.fill(answer, f"Evidence: {answer.runs} runs of {{duration}} from each of {kicks}")),
+        *[Heading(q.fill(answer, f"Evidence: {answer.runs} runs of {{duration}} from each of {kicks}"))]
+        * bool(known),
         Table(f"{own.name}, evidence", evidence(known), tuple(known)),
         Note(EVIDENCE, "legend", LONG),
         *reasons(rows),

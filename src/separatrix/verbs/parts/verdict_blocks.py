@@ -188,10 +188,8 @@ def deciding(answer: Part, rows: Sequence[Part]) -> Iterator[str]:
     most = even.get("own_critical_friction_high") if even is not None else None
     kept = [row.name for row in known if row.verdict == "STABLE" and row.friction > (most or inf)]
     if even is not None and kept:
-        words = (
-            "Balls that lead and lag under radial load or moment keep the cage stable. Without, the critical "
-        )
-        words += f"friction of {answer.candidate} would be {show(even, 'own_critical_friction')}"
+        words = "Balls that lead and lag under radial load or moment keep the cage stable. Without this, the "
+        words += f"critical friction of {answer.candidate} would be {show(even, 'own_critical_friction')}"
         yield f"{words}, less than the friction of {', '.join(kept)}."
     weak = [row for row in known if row.cage_motion == "ROLLING" and row.verdict == "STABLE"]
     if weak:
