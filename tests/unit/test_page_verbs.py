@@ -141,9 +141,13 @@ def test_the_push_of_a_ball_levels_off_where_the_page_states():
     """At the force of the law of traction for any speed beyond its knee; the most is friction times loads."""
     found = computed(verb_named("mobility"), read_study("le7"))
     law = found.record.mobility.traction
-    (lead,) = verb_named("mobility").page(part_of(document(verb_named("mobility"), found))).lead
+    known = document(verb_named("mobility"), found)
+    (lead,) = verb_named("mobility").page(part_of(known)).lead
     assert f"levels off at {law.force(1e3 * law.speed):.4g} N." in lead
     assert f"carries at most {found.record.mobility.capacity:.4g} N" in lead
+    beyond = {**known, "traction": {**known["traction"], "capacity": 1.01 * known["capacity"]}}
+    (fitted,) = verb_named("mobility").page(part_of(beyond)).lead  # a fit above it: not for spin
+    assert ("spin takes" in lead, "spin takes" in fitted) == (True, False)
 
 
 @pytest.mark.parametrize(("half", "words"), [(None, "1.0e+05"), (2e5, "1.0e+05"), (5e4, "")])
