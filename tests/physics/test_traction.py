@@ -335,7 +335,7 @@ def test_a_thick_film_in_series_is_noted():
         for share in (0.031, 0.029)
     )
     (note,) = thick.notes
-    assert re.search(r"0\.031 of the semi-minor axis.*is valid up to 0\.03 \(docs", note)
+    assert re.search(r"^The film .* 0\.031 of the semi-minor axis\. Up to 0\.03 .* \"exact\"", note)
     assert thick.slope > 0.0
     assert thin.notes == ()
 

@@ -157,7 +157,7 @@ def test_a_whirl_is_followed_for_fifty_turns_and_its_force_means_nothing_beyond_
     assert re.search(r"Whirl \d\S* k?Hz (forward|backward), seen from the balls; the centre moves at", text)
     assert found["force_exceeds_races"] is (found["largest_contact_force"] > found["force_limit"])
     assert found["force_limit"] == pytest.approx(95.7 / 0.6, rel=0.01)
-    assert re.search(r"Pocket force, largest above what the races hold, (159.5|160) N", text)
+    assert re.search(r"Pocket force, largest above (159.5|160) N, whose friction is all that", text)
 
 
 def test_a_whirl_whose_forces_pass_the_races_is_followed_among_free_balls(folder):

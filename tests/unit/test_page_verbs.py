@@ -10,7 +10,7 @@ from test_reference_tables import missing
 from separatrix import InputError, read_study, restitution_factor, wilson_interval
 from separatrix.ground.compiling import COMPILING
 from separatrix.ground.document import Part, part_of
-from separatrix.ground.quantity import Estimate, Quantity, alone
+from separatrix.ground.quantity import Estimate, Quantity, alone, in_column
 from separatrix.present.blocks import Level, Picture
 from separatrix.present.draw import draw_panel
 from separatrix.present.figure import Across, Trace
@@ -141,9 +141,13 @@ def test_the_push_of_a_ball_levels_off_where_the_page_states():
     """At the force of the law of traction for any speed beyond its knee; the most is friction times loads."""
     found = computed(verb_named("mobility"), read_study("le7"))
     law = found.record.mobility.traction
-    (lead,) = verb_named("mobility").page(part_of(document(verb_named("mobility"), found))).lead
+    known = document(verb_named("mobility"), found)
+    (lead,) = verb_named("mobility").page(part_of(known)).lead
     assert f"levels off at {law.force(1e3 * law.speed):.4g} N." in lead
     assert f"carries at most {found.record.mobility.capacity:.4g} N" in lead
+    beyond = {**known, "traction": {**known["traction"], "capacity": 1.01 * known["capacity"]}}
+    (fitted,) = verb_named("mobility").page(part_of(beyond)).lead  # a fit above it: not for spin
+    assert ("spin takes" in lead, "spin takes" in fitted) == (True, False)
 
 
 @pytest.mark.parametrize(("half", "words"), [(None, "1.0e+05"), (2e5, "1.0e+05"), (5e4, "")])
@@ -319,6 +323,11 @@ def candidate(verdict="STABLE", critical=(0.248, 0.231, 0.269), friction=0.28):
             (0.143, 0.121, 0.204),
             "is not enough for Phenolic. {}0.143 (0.121 to 0.204).",
         ),
+        (
+            candidate(critical=(None, 1.0, None)),
+            (0.77, 0.72, 0.81),
+            "raises the critical friction. {}0.770 (0.720 to 0.810).",
+        ),
         (candidate(), (0.56, 0.53, 0.62), "and lowers the critical friction. {}0.560 (0.530 to 0.620)."),
         (candidate(), (0.22, 0.2, 0.24), "does not decide. {}0.220 (0.200 to 0.240)."),
         (candidate(), (0.28, 0.26, 0.3), "does not decide. {}0.280 (0.260 to 0.300)."),
@@ -333,6 +342,19 @@ def test_the_headline_says_whether_a_tight_land_decides(row, wide, words):
     start = "The land stops the cage before its pockets do (land clearance 200 µm, pocket clearance 250 µm)"
     assert said.startswith(start)
     assert said.endswith(words.format("With a land of 0.4 mm the critical friction of Phenolic would be "))
+
+
+@pytest.mark.parametrize(("friction", "count"), [(0.22, 1), (0.115, 0)])
+def test_the_headline_says_whether_uneven_orbits_decide(friction, count):
+    """A pump cage was STABLE at 0.22, and without its radial load it whirls from 0.108."""
+    ends = dict(zip((CRITICAL, f"{CRITICAL}_low", f"{CRITICAL}_high"), (0.108, 0.1, 0.122), strict=True))
+    effect = {"name": "even_orbits", "change": "balls that neither lead nor lag", **ends}
+    row = Part(candidate(friction=friction).values | {"land_clearance": None}, {})
+    said = [*deciding(Part({"effects": [effect], "candidate": "Armalon"}, {}), [row])]
+    words = (
+        "critical friction of Armalon would be 0.108 (0.100 to 0.122), less than the friction of Phenolic."
+    )
+    assert [one.endswith(words) for one in said] == [True] * count
 
 
 def test_heat_of_rubbing_has_the_digits_of_the_headline():
@@ -374,7 +396,7 @@ def test_the_headline_states_no_force_beyond_what_the_races_hold():
     (said,) = deciding(
         Part({"effects": None, "candidate": None}, {}), [Part(values | {"land_clearance": None}, units)]
     )
-    assert said.endswith("with pocket forces above what the races hold, 593 N.")
+    assert said.endswith("with pocket forces above 593 N, whose friction is all that the races hold.")
 
 
 @pytest.mark.parametrize(("others", "whose"), [(0, "Every cage"), (1, "The cage of Phenolic, Phenolic")])
@@ -390,7 +412,10 @@ def test_the_headline_states_the_heat_of_cages_that_rub_on_their_land(others, wh
 
 
 def test_no_digits_stand_that_say_nothing():
-    """104 (104 to 104) m/s, and 14.89452 deg of a clearance of 8 um; a stated angle is as it is written."""
+    """104 (104 to 104) m/s, 14.89452 deg of a clearance of 8 um, 6e-22 deg; a stated angle is as written."""
+    noise = Quantity(label="", digits=4, rounding=1e-12)
+    assert alone(1e-23, noise, "rad") == "0 deg"
+    assert in_column([1e-23, -1e-23, 0.2], noise, "rad")[0] == ["0.00", "0.00", "11.46"]
     for ends, words in (((104.0, 104.2), "104 m/s"), ((103.0, 105.0), "104 (103 to 105) m/s")):
         assert alone(Estimate(104.1, *ends), Quantity(label="", digits=3), "m/s") == words
     entry = {"value": 0.2599584, "unit": "rad", "origin": "derived, from radial_clearance"}
@@ -414,7 +439,8 @@ def test_the_headline_explains_a_critical_friction_of_zero():
     said = verdict_sentences([row], "air")
     words = "half the runs whirl even without friction in the pockets, which do not drive them"
     assert f"Safety factor 0: {words}; their friction is 0.28" in said
-    known = [candidate(), Part(row.values | {"name": "PEEK"}, {})]
+    known = [candidate(), Part(row.values | {"name": "PEEK", "left_pocket": 9}, {})]
+    words = words.replace("whirl", "whirl or bring a ball to the edge of its pocket")
     assert f"PEEK: {words}." in [*deciding(Part({"effects": None, "candidate": None}, {}), known)]
     wide = dict(zip((CRITICAL, f"{CRITICAL}_low", f"{CRITICAL}_high"), (0.254, 0.24, 0.272), strict=True))
     effects = [{"name": "wide_land", "change": "a land of 0.4 mm", **wide}]
@@ -428,13 +454,14 @@ def test_a_critical_friction_that_was_not_found_is_no_friction_of_a_whirl():
     assert "Safety factor > 3.57: at no friction up to 1.000 half the runs whirl, the pockets" in said
 
 
-@pytest.mark.parametrize("motion", ["plane", "space"])
-def test_the_paper_differs_by_the_motion_too(motion):
+@pytest.mark.parametrize(("motion", "ball"), [("plane", "auto"), ("space", "auto"), ("space", "damper")])
+def test_the_paper_differs_by_the_motion_too(motion, ball):
     """In space it is the tilt that may decide, and not the damping alone; the plane has none."""
     row = Part(candidate().values | {"paper_verdict": "UNSTABLE", "restitution_threshold": 0.9}, {})
     chain = {"race_damping": 105.7, "race_damping_free_spin": 94.4}
-    told = by_paper(Part({"chain": chain, "cage": {"motion": motion}}, {}), [row], ["Phenolic"])[0].text
-    assert "a ball that may spin in an impact resists it with only 94.4" in told
+    answer = Part({"chain": chain, "cage": {"motion": motion}, "ball_model": ball}, {})
+    told = by_paper(answer, [row], ["Phenolic"])[0].text
+    assert ("a ball that may spin in an impact resists it with" in told) is (ball == "auto")
     assert ("the cage also tilts" in told) is (motion == "space")
 
 

@@ -289,6 +289,14 @@ def test_every_number_of_a_page_is_the_documents(verb, answers, monkeypatch):
     assert {one for one in found if one is not None} <= known
 
 
+def test_a_ranking_that_was_interrupted_early_has_no_heading_without_a_table(folder):
+    """The heading of the evidence came before the first note."""
+    document = saved(folder, "rank")
+    for row in [row for one in document["environments"] for row in one["materials"]]:
+        row["verdict"] = None
+    assert "Evidence:" not in text(verb_named("rank").page(part_of(document)))
+
+
 def test_a_life_names_the_state_of_the_clearances_that_open(folder):
     """They are those that the study states: of a cage at rest they were headed "as it runs"."""
     document = saved(folder, "life")
@@ -397,7 +405,8 @@ def test_sentences_have_the_micro_sign_of_tables():
 def test_a_click_in_a_figure_is_at_the_values_of_its_axes():
     """The place of a point with a text, by the ends of both axes, has the values of the point."""
     x = Axis(label="a [um]", size=1e-6, low=1e-6, high=1e-4, is_log=True)
-    point = Trace(x=(1e-5, 2e-5), y=(0.25, 0.5), line="", marker="o", hover=("here", "there"))
+    # a 0 has no place on a logarithmic axis; it left the figure without room and warned
+    point = Trace(x=(1e-5, 2e-5, 0.0), y=(0.25, 0.5, 0.1), line="", marker="o", hover=("here", "there", "0"))
     panel = Panel(title="", x=x, y=Axis(label="b [-]", low=0.0, high=1.0), marks=(point,))
     drawing = save(Figure(rows=((panel,),), heading=("above", "it")))
     (across, down, _), _ = drawing.targets

@@ -60,7 +60,8 @@ def test_a_number_beyond_real_bearings_draws_one_note(case: str):
 
 
 def test_a_pressure_beyond_the_static_limit_and_a_contact_over_the_shoulder():
-    """100 kN on the shipped bearing."""
+    """100 kN on the shipped bearing; 13.2 kN are just beyond it, were "52 deg, beyond 52 deg"."""
+    assert "race ends 52.1 deg from" in notes(operated(axial_load=13.2e3))[-1]
     pressure, shoulder = notes(operated(axial_load=1e5))
     assert "GPa at the inner race exceeds 4.2 GPa, the static limit of ISO 76" in pressure
     assert "beyond a shoulder at 52 deg (assumed height: 0.2 of the ball diameter)" in shoulder

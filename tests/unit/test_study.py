@@ -414,6 +414,15 @@ def test_a_stiffness_needs_a_value_or_a_modulus(tmp_path):
     assert read_study(path).cage.ball_cage_stiffness is None
 
 
+def test_a_refused_candidate_leaves_the_mass_of_its_cage_open(tmp_path):
+    """The density of the cage was "not known" beside the mistake in the candidate that has it."""
+    ring = 'material = "Mine"\ninner_diameter = "58 mm"\nouter_diameter = "72 mm"\nwidth = "14 mm"'
+    text = VALID.replace("[ranking]\n" + TABLE, IN_PLACE).replace('mass = "25 g"', ring)
+    refused = refusal(written(tmp_path, text.replace("= 0.11 }", "= -0.1 }")))
+    assert "must lie between 0 and 2" in refused
+    assert "density" not in refused
+
+
 CHAIN = {f"{i}.toml": f'extends = "{i + 1}.toml"\n' for i in range(40)} | {"40.toml": VALID}
 EXTENDING = {
     "a circle": ({"b.toml": 'extends = "0.toml"\n'}, "b.toml", "0.toml, line 1: extends leads back"),

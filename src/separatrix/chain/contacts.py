@@ -275,8 +275,8 @@ def beyond_contacts(
     race, end, shoulder = max(ends, key=lambda one: one[1] - one[2])
     if end > shoulder:
         yield (
-            f"The contact at the {race.value} race ends {math.degrees(end):.0f} deg from the bottom of its "
-            f"groove, beyond a shoulder at {math.degrees(shoulder):.0f} deg (assumed height: {SHOULDER:g} of "
+            f"The contact at the {race.value} race ends {math.degrees(end):.3g} deg from the bottom of its "
+            f"groove, beyond a shoulder at {math.degrees(shoulder):.3g} deg (assumed height: {SHOULDER:g} of "
             "the ball diameter): the edge raises the pressure above the computed one."
         )
     # balls that the inner race hardly touches; without race control it turns them as if it did

@@ -83,7 +83,7 @@ class Friction:
 
 
 SCATTER_RULE = f"must be >= {LEAST_FRICTION:g} where there is a standard deviation [-]"
-SCATTER_CURE = "A friction of 0 that scatters is no measurement: give its mean, or { between = [..., ...] }."
+SCATTER_CURE = "A friction of 0 does not scatter: give its mean, or { between = [..., ...] }."
 
 
 LEAST_SPAN = 1.2

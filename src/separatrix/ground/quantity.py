@@ -21,7 +21,8 @@ class Quantity:
     `ends` are the names of the ends of its interval, by default its own with ``_low`` and ``_high``. `form`
     is for numbers of which a reader expects fixed decimals, such as ``"+.2f"``; others have `digits`
     significant ones. `unit` is one that readers expect where the size of a number does not choose it. A
-    number at the `top` of what is possible or searched is written as beyond its lower end.
+    number at the `top` of what is possible or searched is written as beyond its lower end; one within
+    `rounding` of 0 in SI, below what the solver resolves, as 0.
     """
 
     label: str
@@ -33,6 +34,11 @@ class Quantity:
     unit: str = ""
     ends: tuple[str, str] | None = None
     top: float = inf
+    rounding: float = 0.0
+
+    def seen(self, number: float) -> float:
+        """Return the number that is written for this one."""
+        return 0.0 if abs(number) < self.rounding else number
 
 
 class Estimate(NamedTuple):
@@ -71,6 +77,7 @@ def alone(value: Number, quantity: Quantity, unit: str) -> str:
     number = middle(value)
     if number is None:
         return ABSENT
+    number = quantity.seen(number)
     size, symbol = scale([number], unit, quantity.unit)
     text = _one(number / size, quantity)
     if isinstance(value, Estimate) and value.low is not None:
@@ -89,7 +96,7 @@ def _one(number: float, quantity: Quantity, *, sign: bool = True) -> str:
 
 def in_column(values: Sequence[Number], quantity: Quantity, unit: str) -> tuple[list[str], str, float]:
     """Return the numbers of a column in one unit and with the same decimals, the unit, and its size."""
-    known = [one for value in values for one in _parts(value)]
+    known = [quantity.seen(one) for value in values for one in _parts(value)]
     size, symbol = scale(known, unit, quantity.unit)
     form = quantity.form or _form([one / size for one in known], quantity.digits)
     plain = form.lstrip("+")
@@ -97,6 +104,7 @@ def in_column(values: Sequence[Number], quantity: Quantity, unit: str) -> tuple[
     def text(number: float | None, form: str) -> str:
         if number is None:
             return ABSENT
+        number = quantity.seen(number)
         if not form:
             return format_number(number / size, quantity.digits)
         written = format(number / size, form)

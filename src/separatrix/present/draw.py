@@ -288,7 +288,8 @@ def _log_ticks(axis: Any) -> None:
 
 
 def _scaled(values: Numbers, axis: Axis) -> Array:
-    return np.array([np.nan if one is None else one for one in values], dtype=float) / axis.size
+    absent = [one is None or (axis.is_log and one <= 0.0) for one in values]
+    return np.where(absent, np.nan, np.array(values, dtype=float)) / axis.size
 
 
 def _arrows(axes: Axes, one: Trace, places: Array, starts: Array) -> None:

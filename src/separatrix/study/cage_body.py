@@ -176,9 +176,6 @@ def ring_between_rings(cage: CageDesign, bearing: BallBearing) -> Faults:
     if width <= ball + cage.pocket_clearance:
         least = format_quantity(ball + cage.pocket_clearance, "m")
         yield Fault(("cage", "width"), f"must be larger than a pocket, {least}", "Pockets are holes.")
-    if cage.mass is None and (cage.material is None or cage.material.density is None):
-        cure = "Give it, or a cage material with its density."
-        yield Fault(("cage", "mass"), "is missing, and the density of the cage is not known", cure, "")
 
 
 def lands_between_rings(cage: CageDesign, bearing: BallBearing) -> Faults:

@@ -35,12 +35,13 @@ def compute(study: Study, _options: NoOptions) -> MobilityAnswer:
 
 def page(answer: Part) -> Page:
     """Return the page of `mobility`."""
+    law = answer.traction
+    spin = ", in which spin takes a part of the friction" * (law.capacity < answer.capacity)
     lead = (
         "The races resist a small push of the most loaded ball along its orbit with a damping $C_f$ of "
         "{damping}, and friction carries at most {capacity}. The law of traction, which the cage takes, is "
-        "fitted to pushes both ways, in which spin takes a part of the friction: it levels off at "
+        f"fitted to pushes both ways{spin}, with an error of up to {{law_error}} of that: it levels off at "
     )
-    law = answer.traction
     return page_of(
         answer,
         Note(f"{fill(answer, lead)}{show(law, 'capacity')}.", "lead"),

@@ -77,7 +77,8 @@ def page(answer: Part) -> Page:
         *by_paper(answer, known, apart),
         *over_inputs(answer, rows),
         *pictures(answer, own),
-        Heading(q.fill(answer, f"Evidence: {answer.runs} runs of {{duration}} from each of {kicks}")),
+        *[Heading(q.fill(answer, f"Evidence: {answer.runs} runs of {{duration}} from each of {kicks}"))]
+        * bool(known),
         Table(f"{own.name}, evidence", evidence(known), tuple(known)),
         Note(EVIDENCE, "legend", LONG),
         *reasons(rows),
@@ -135,9 +136,11 @@ def by_paper(answer: Part, known: Sequence[Part], apart: Sequence[str]) -> list[
     numbers = ("restitution_threshold", "margin", "paper_probability_stable")
     columns = (NAME, *map(q.column, numbers), text_column("verdict", lambda row: row.paper_verdict))
     model = q.fill(answer.chain, "in the plane, balls as dampers of {race_damping}, Eq. 18")
-    ball = "a ball that may spin in an impact resists it with only {race_damping_free_spin}"
-    tilts = "the cage also tilts and moves along the axis, and " * (answer.cage.motion == "space")
-    why = q.fill(answer.chain, f" It differs for {', '.join(apart)}: in the full model {tilts}{ball}.")
+    ball = "a ball that may spin in an impact resists it with {race_damping_free_spin} and slides beyond the "
+    ball = f"{ball}friction of its races" * (answer.ball_model != "damper")
+    tilts = "the cage also tilts and moves along the axis" * (answer.cage.motion == "space")
+    full = ", and ".join(filter(None, (tilts, ball)))
+    why = q.fill(answer.chain, f" It differs for {', '.join(apart)}: in the full model {full}.")
     each = by_verdict((row.paper_verdict, row.name) for row in rows)
     caption = f"{q.begun(model)}.{why if apart else ''}"
     return [
@@ -224,7 +227,7 @@ def pictures(answer: Part, own: Part) -> list[Block]:
     caption = "Restitution thresholds of the candidates: larger is better; the upright line is this bearing."
     if has_safety(answer.overall):
         caption = "Safety factors of the candidates, larger is better: at 1 half the runs whirl."
-        caption += " An arrow has no upper end."
+        caption += " An arrow has no upper end; a factor of 0 has no mark."
     found: list[Block] = [Picture("rank-overview", lambda: overview(answer, own), caption)]
     if "stability" in answer:
         caption = f"The candidates in {own.name} on the paper's stability curve: below it the cage is stable."

@@ -65,7 +65,7 @@ def outcome_sentence(history: History, *, limit: Newton | None, rubbing_power: W
         largest = history.largest_contact_force
         force = format_quantity(largest, "N", 3)
         if limit is not None and largest > limit:
-            force = f"above what the races hold, {format_quantity(limit, 'N', 3)}"
+            force = f"above {format_quantity(limit, 'N', 3)}, whose friction is all that the races hold"
         said += f" It whirls at {pace}; the largest force in a pocket is {force}."
     if outcome in (RunOutcome.SETTLES, RunOutcome.ROLLS) and history.mean_offset > 0.0:
         said += f" Its centre is {format_quantity(history.mean_offset, 'm', 3)} from the axis on average"

@@ -124,7 +124,10 @@ def _margin(first: Sequence[Part]) -> str:
     )
 
 
-WITHOUT_FRICTION = "half the runs whirl even without friction in the pockets, which do not drive them"
+def without_friction(rows: Sequence[Part]) -> str:
+    """Return why critical frictions are 0."""
+    edge = " or bring a ball to the edge of its pocket" * any(row.get("left_pocket") for row in rows)
+    return f"half the runs whirl{edge} even without friction in the pockets, which do not drive them"
 
 
 def _safety(first: Sequence[Part]) -> str:
@@ -132,7 +135,7 @@ def _safety(first: Sequence[Part]) -> str:
     criticals, frictions = span(first, "own_critical_friction"), span(first, "friction")
     lowest = min(first, key=lambda row: row.safety_factor_low if "safety_factor_low" in row else inf)
     if lowest.get("own_critical_friction") == 0.0:
-        return f"Safety factor 0: {WITHOUT_FRICTION}; their friction is {frictions}."
+        return f"Safety factor 0: {without_friction(first)}; their friction is {frictions}."
     factor = show(lowest, "safety_factor")
     at = "at least " if len(first) > 1 and not factor.startswith(">") else ""
     half = f"half the runs whirl at a friction of {criticals}"
@@ -151,11 +154,14 @@ def deciding(answer: Part, rows: Sequence[Part]) -> Iterator[str]:
     if others := [(verdict, name) for verdict, name, mean in drawn if verdict not in (None, mean)]:
         yield f"That is at the means of the uncertain inputs; with them drawn: {by_verdict(others)}."
     best = known[0]
-    undriven = [row.name for row in known if row.get("own_critical_friction") == 0.0]
+    undriven = [row for row in known if row.get("own_critical_friction") == 0.0]
     if undriven and best.get("own_critical_friction") != 0.0:
-        yield f"{', '.join(undriven)}: {WITHOUT_FRICTION}."
+        yield f"{', '.join(row.name for row in undriven)}: {without_friction(undriven)}."
     both = fill(best, "land clearance {land_clearance}, pocket clearance {pocket_clearance}")
-    wide = next((one for one in answer.effects or () if one.name == "wide_land"), None)
+    wide, even = (
+        next((one for one in answer.effects or () if one.name == name), None)
+        for name in ("wide_land", "even_orbits")
+    )
     own = next((row for row in known if row.name == answer.candidate), None)
     if wide is not None and own is not None:
         critical = wide.get("own_critical_friction") or wide.own_critical_friction_low
@@ -172,17 +178,24 @@ def deciding(answer: Part, rows: Sequence[Part]) -> Iterator[str]:
         elif wide_at_most >= own.own_critical_friction_low:
             yield f"The land stops the cage before its pockets do ({both}) but does not decide. {words}."
         else:
-            steadies = "is not enough for " + ", ".join(whirling) if whirling else "keeps it stable"
+            steadies = "keeps it stable" if above else "raises the critical friction"
+            steadies = "is not enough for " + ", ".join(whirling) if whirling else steadies
             whose = f", less than the friction of {', '.join(above)}" if above else ""
             yield f"The land stops the cage before its pockets do ({both}), which {steadies}. {words}{whose}."
     elif best.get("land_clearance") is not None and any(row.verdict != "STABLE" for row in known):
         words = "The pockets decide, not the land (clearances {pocket_clearance}, {land_clearance})."
         yield fill(best, words)
+    most = even.get("own_critical_friction_high") if even is not None else None
+    kept = [row.name for row in known if row.verdict == "STABLE" and row.friction > (most or inf)]
+    if even is not None and kept:
+        words = "Balls that lead and lag under radial load or moment keep the cage stable. Without this, the "
+        words += f"critical friction of {answer.candidate} would be {show(even, 'own_critical_friction')}"
+        yield f"{words}, less than the friction of {', '.join(kept)}."
     weak = [row for row in known if row.cage_motion == "ROLLING" and row.verdict == "STABLE"]
     if weak:
         force = "up to {largest_contact_force}"
         if weak[0].force_exceeds_races:
-            force = "above what the races hold, {force_limit}"
+            force = "above {force_limit}, whose friction is all that the races hold"
         words = "a weak whirl remains, fed {pocket_power}, with pocket forces " + force
         yield f"{weak[0].name} rolls in its pockets: {fill(weak[0], words)}."
     rubs = [row for row in known if row.cage_motion == "ON THE LAND" and row.verdict == "STABLE"]
