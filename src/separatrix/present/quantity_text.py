@@ -157,7 +157,7 @@ QUANTITIES: dict[str, Quantity] = {
     "housing_share": Q(label="share of the power of a whirl in it", unit="%", digits=2),
     "slower_torque": Q(label="torque at 0.8 of the speed", digits=4),
     "torque_exponent": Q(label="exponent of torque against speed", form=".2f"),
-    "race_exponent": Q(label="the same of balls on races alone", form=".2f"),
+    "race_exponent": Q(label="the same without the cage", form=".2f"),
     "judged_from": Q(label="start of the judged part", digits=4),
     "followed": Q(label="end of the judged part", digits=4),
     "one_core_time": Q(label="time that one core needs, within a factor of 3", digits=1),
