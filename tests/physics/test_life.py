@@ -227,6 +227,7 @@ def test_debris_grows_a_film_that_does_not_wear_until_the_reservoir_is_empty():
     assert free.films[0][-1, 0] == pytest.approx(0.5 * UM + grown, rel=1e-6)
     ended = course(PHASE, worn(**given, reservoir=1e-30), 1e4)
     assert ended.films[0][-1, 0] < 0.5 * UM + 1e-3 * grown
+    assert ended.clearance == pytest.approx(free.clearance, rel=1e-12)  # its pockets open as before
 
 
 def test_deposit_balances_wear_at_its_fixed_point():
@@ -280,6 +281,24 @@ def test_a_test_at_the_speed_of_the_mission_stands_for_itself():
     assert _accelerated(
         solution, Node(0.2, 30.0, (2.0, 200.0), (0.0, 0.0)), twice, worn()
     ).film_time == pytest.approx(0.5)
+
+
+class Tabulated:
+    """A runner that has every place of a table already."""
+
+    def work_out(self, _node, places, *, into, load):  # noqa: ARG002
+        """Return the answer of a table that is the same everywhere."""
+        return into(dict.fromkeys(places, Node(0.2, 30.0, (2.0, 200.0), (0.0, 0.0))))
+
+
+def test_a_cage_without_candidates_has_the_name_of_its_material_else_of_its_study():
+    """Sentences are on the cages of this name."""
+    study = separatrix.read_study("momentum-wheel")
+    rates = WearRates(film_wear=5e-18, cage_wear=1e-15, bare_friction=0.35)
+    for material, name in ((study.ranking.candidates[0].material, "Vespel SP-3"), (None, "momentum-wheel")):
+        cage = replace(study.cage, ball_cage_friction=0.1, ball_cage_stiffness=1e6, material=material)
+        one = replace(study, ranking=None, wear=rates, cage=cage)
+        assert life(one, revolutions=1e6, draws=64, runner=Tabulated()).candidate == name
 
 
 @pytest.mark.parametrize(

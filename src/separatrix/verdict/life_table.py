@@ -198,7 +198,8 @@ def life(
         ]
         tested = _accelerated(test.solution, found[places[-1]], each, worn) if test else None
         speed = sum(one.share * _turns(one.solution.study) for one in phases)
-        name = candidate.name if candidate else "the cage"
+        made_of = candidate or (study.cage and study.cage.material)
+        name = (made_of and made_of.name) or study.name
         return _life(name, each, worn, inputs, speed, revolutions, tested, notes)
 
     places = list(itertools.product(range(len(phases)), range(FRICTIONS), range(len(clearances))))
