@@ -16,6 +16,8 @@ from separatrix.chain.slip_work import TrackWork, track_work
 from separatrix.study.study import Film, KinematicModel, Race, WearRates
 from separatrix.verdict.critical_friction import PLACES, Count, steepness
 from separatrix.verdict.life_table import (
+    FREELY,
+    LEAST_CRITICAL,
     Node,
     _accelerated,
     _bearing_wear,
@@ -284,11 +286,14 @@ def test_a_test_at_the_speed_of_the_mission_stands_for_itself():
 
 
 class Tabulated:
-    """A runner that has every place of a table already."""
+    """A runner that has every place of a table already, of one critical friction."""
+
+    def __init__(self, critical=0.2):
+        self.node = Node(critical, 30.0, (2.0, 200.0), (0.0, 0.0))
 
     def work_out(self, _node, places, *, into, load):  # noqa: ARG002
-        """Return the answer of a table that is the same everywhere."""
-        return into(dict.fromkeys(places, Node(0.2, 30.0, (2.0, 200.0), (0.0, 0.0))))
+        """Return the answer of the table."""
+        return into(dict.fromkeys(places, self.node))
 
 
 def test_a_cage_without_candidates_has_the_name_of_its_material_else_of_its_study():
@@ -298,7 +303,10 @@ def test_a_cage_without_candidates_has_the_name_of_its_material_else_of_its_stud
     for material, name in ((study.ranking.candidates[0].material, "Vespel SP-3"), (None, "momentum-wheel")):
         cage = replace(study.cage, ball_cage_friction=0.1, ball_cage_stiffness=1e6, material=material)
         one = replace(study, ranking=None, wear=rates, cage=cage)
-        assert life(one, revolutions=1e6, draws=64, runner=Tabulated()).candidate == name
+        found = life(one, revolutions=1e6, draws=64, runner=Tabulated())
+        assert (found.candidate, FREELY in found.notes) == (name, False)
+    # of a critical friction of 0 the cage counts as unstable with any friction
+    assert FREELY in life(one, revolutions=1e6, draws=64, runner=Tabulated(LEAST_CRITICAL)).notes
 
 
 @pytest.mark.parametrize(

@@ -93,7 +93,7 @@ QUANTITIES: dict[str, Quantity] = {
     "first_decile": Q(label="P(stable) of the first tenth", head="first tenth", form=".2f"),
     "last_decile": Q(label="P(stable) of the last tenth", head="last tenth", form=".2f"),
     "correlation": Q(label="rank correlation", form="+.2f"),
-    "draws": Q(label="bearings drawn"),
+    "draws": Q(label="bearings drawn", form=".0f"),
     "coverage_calm": Q(label="coverage where deposit of a calm cage balances wear", unit="%", digits=2),
     "coverage_whirling": Q(label="the same of a cage that whirls", unit="%", digits=2),
     "film_time": Q(label="duty that an hour of the test wears the films for, in hours", digits=3),

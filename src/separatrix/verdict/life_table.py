@@ -70,6 +70,14 @@ NO_EXPONENT = (
     "The land opens, but its critical friction is beyond what was searched: it stays that of a new land."
 )
 
+LEAST_CRITICAL: Ratio = 1e-3
+"""Of the table, for the logarithm of one that is 0."""
+
+FREELY = (
+    "At places of the table the cage whirls without friction in its pockets (the land may drive it): there "
+    "it counts as unstable with any, although friction may calm it."
+)
+
 NARROWER = (1.0, 0.5, 0.2, 0.05)
 """Parts of that widening, the first that the gap between the balls allows."""
 
@@ -344,7 +352,7 @@ def _node(solution: Solution, settings: StabilitySettings, runner: Runner) -> No
     """Critical friction at a place, and the work of the pockets below and above it."""
     limit = cage_limit(solution, settings, runner)
     at = limit.own_critical_friction
-    critical = SEARCHED_FRICTION if at is None else max(at, 1e-3)
+    critical = SEARCHED_FRICTION if at is None else max(at, LEAST_CRITICAL)
     ball = BallModel.FREE if limit.critical_ball == "free" else None
 
     def sliding(friction: Ratio, *, whirls: bool) -> tuple[Watt, Watt]:
@@ -448,7 +456,8 @@ def _drawn(
 
 
 def _notes(found: Mapping[Place, Node], fixed: list[str], assumed: list[str]) -> list[str]:
-    notes = [note for one in found.values() for note in one.notes]
+    is_free = any(one.critical <= LEAST_CRITICAL for one in found.values())
+    notes = [FREELY] * is_free + [note for one in found.values() for note in one.notes]
     if assumed:
         words = ", ".join(name.removeprefix("wear.") for name in assumed)
         notes.append(f"Stated without a distribution, a factor of {DECADE:g} either way is assumed: {words}.")
