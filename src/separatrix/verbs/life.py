@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from math import inf
+from math import inf, sqrt
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -183,14 +183,18 @@ WHY = {
 }
 
 
+SURE = 3.0
+"""Rank correlation over its standard error without dependence, from which an input is worth a measurement."""
+
+
 def why(answer: Part) -> Iterator[str]:
     """Yield what ends it, and what to measure."""
     shares = sorted(((getattr(answer, name), name) for name in WHY), reverse=True)
     known = [f"{show(answer, name)} because {WHY[name]}" for share, name in shares if share >= 0.05]
     if known:
         yield f"Of those that become so, {', '.join(known)}."
-    if answer.drivers:
-        first = answer.drivers[0]
+    first = answer.drivers[0] if answer.drivers else None
+    if first and abs(first.correlation) > SURE / sqrt(answer.draws):
         yield f"Measure first: {quantity(first.name).label} (rank correlation {show(first, 'correlation')})."
 
 
