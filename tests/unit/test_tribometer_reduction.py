@@ -14,6 +14,7 @@ from separatrix.friction.logs.column_map import Conditions
 from separatrix.friction.logs.log import RawLog
 from separatrix.friction.reduction import TestFriction, reduce_log
 from separatrix.friction.wear import FALLS, NO_GROWTH, NO_PRESSURE, NO_WAY, TOO_FEW, sample_wear
+from separatrix.ground.document import Part
 from separatrix.verbs.tribometer import _worn
 
 MEASURED = {"slip_speed": 1.0, "normal_force": 10.0, "temperature": 150.0}
@@ -362,3 +363,6 @@ def test_scatter_of_few_tests_is_that_of_another_test():
         (line,) = _worn(found)
         assert f"a factor of {times} either way" in line
         assert f"({len(tests)} tests)" in line
+    alone = {"wear_coefficient": 1e-15, "wear_error": 1e-18, "conditions": {"material": "PEEK"}}
+    (line,) = _worn([Part(alone, {"wear_error": "m3/(N m)"})])
+    assert "by the noise of this test; tests differ more" in line
