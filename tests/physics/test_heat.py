@@ -191,5 +191,8 @@ def test_a_coolant_that_nobody_knows(tmp_path):
     warm = extended(tmp_path, '[operation]\ntemperature = "200 K"\n[cooling]\nswirl = 0.5\n')
     with pytest.raises(InputError, match=r"toml, line \d+: \[operation\] fluid has no density near 200 K"):
         separatrix.bearing(warm)
+    bare = extended(tmp_path, '[operation]\nfluid = "nitrogen"\n[cooling]\nswirl = 0.5\n')
+    with pytest.raises(InputError, match=r"fluid is not a fluid of the library, .*; got nitrogen\. Write"):
+        separatrix.bearing(bare)
     with pytest.raises(InputError, match=r"\[operation\] fluid is missing beside \[cooling\]"):
         extended(tmp_path, "[cooling]\nswirl = 0.5\n", "ball-218")

@@ -228,6 +228,11 @@ def _required(study: Study, name: str, temperature: Kelvin) -> float:
     if found is None:
         rule = f"has no {name.replace('_', ' ')} near {format_quantity(temperature, 'K')} in the library"
         cure = "Leave [cooling] out, or state it in a library file of your own."
+        if study.fluid is None:
+            rule = "is not a fluid of the library, which [cooling] needs"
+            cure = (
+                'Write its state, too: "liquid nitrogen", "GHe"; `separatrix materials list` has the names.'
+            )
         where = f"{study.place('operation.fluid')}: [operation] fluid"
         raise InputError(where, rule, str(study.operation.fluid), cure)
     return found
