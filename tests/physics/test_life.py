@@ -310,6 +310,24 @@ def test_a_cage_without_candidates_has_the_name_of_its_material_else_of_its_stud
 
 
 @pytest.mark.parametrize(
+    ("land", "places"),
+    [
+        (3e-4, (3.0, 4.5, 7.5)),
+        (4e-4, (3.0, 4.0, 4.5, 7.5)),
+        (4.5e-4, (3.0, 4.5, 7.5)),
+        (8e-4, (3.0, 4.5, 7.5)),
+    ],
+)
+def test_the_table_has_the_clearance_at_which_the_land_takes_over(land, places):
+    """A cage of 0.25 mm pockets on a 0.3 mm land was up to 1.5 times as stable between places as by runs."""
+    study = separatrix.read_study("momentum-wheel")
+    rates = WearRates(film_wear=5e-18, cage_wear=1e-15, bare_friction=0.35)
+    one = replace(study, wear=rates, cage=replace(study.cage, land_clearance=land))
+    found = life(one, revolutions=1e6, draws=64, runner=Tabulated())
+    assert 1e4 * found.table.pocket_clearance == pytest.approx(places)
+
+
+@pytest.mark.parametrize(
     ("cases", "line"),
     [
         ([{"operation.inner_speed": 1e3}], "needs a column time_share"),

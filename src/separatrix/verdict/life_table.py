@@ -174,6 +174,8 @@ def life(
     clearances = _clearances(study, "cage.pocket_clearance", solution.stated_design.pocket_clearance)
     land = solution.stated_design.land_clearance or 0.0
     lands = _clearances(study, "cage.land_clearance", land) if _land(solution) else [land]
+    if clearances[0] < land < clearances[-1]:  # where pockets leave the cage to it the limit changes its law
+        clearances = sorted({*clearances, land})
     parts = [(share, varied(study, one)) for share, one in _shared(cases)]
     phases = [_duty(one, candidate, share) for share, one in parts if _turns(one)]  # nothing wears at rest
     if not phases:
