@@ -309,6 +309,17 @@ def test_a_cage_without_candidates_has_the_name_of_its_material_else_of_its_stud
     assert FREELY in life(one, revolutions=1e6, draws=64, runner=Tabulated(LEAST_CRITICAL)).notes
 
 
+@pytest.mark.parametrize(("holds", "is_thin"), [(1e-7, False), (1e-6, True)])
+def test_a_film_that_does_not_cover_its_tracks_from_the_start_is_noted(holds, is_thin):
+    """1 um of it: a race friction of 0.03 + (0.35 - 0.03)/e, five times that of a verdict."""
+    study = separatrix.read_study("momentum-wheel")
+    rates = WearRates(film_wear=5e-18, cage_wear=1e-15, bare_friction=0.35, coverage_thickness=holds)
+    notes = life(replace(study, wear=rates), revolutions=1e6, draws=64, runner=Tabulated()).notes
+    words = "covers 63 % of its tracks by [wear] coverage_thickness: life begins at a race friction of 0.148,"
+    assert any(words in one for one in notes) is is_thin
+    assert any("life begins" in one for one in notes) is is_thin
+
+
 @pytest.mark.parametrize(
     ("land", "places"),
     [

@@ -197,7 +197,7 @@ def life(
         if len(found) < len(places):
             raise Interrupted
         notes = [*_notes(found, fixed, assumed), *_tests(rates, solution), *solution.notes]
-        notes += [NO_WIDTH] if land and not lands[1:] else []
+        notes += [*_thin(worn), *([NO_WIDTH] if land and not lands[1:] else [])]
         each = [
             Phase(
                 share=one.share,
@@ -248,6 +248,17 @@ def wear_rates(study: Study, wear: WearRates, candidate: Candidate | None) -> di
     if problems:
         raise together(problems)
     return found
+
+
+def _thin(worn: Worn) -> Iterator[str]:
+    """A sentence on a new film that does not cover its tracks: by a tenth, as good as the table is."""
+    bare, whole = np.exp(-worn.thickness / worn.coverage), float(np.median(worn.film_friction))
+    begin = float(np.median(worn.film_friction + bare * (worn.bare_friction - worn.film_friction)))
+    if begin > 1.1 * whole:
+        yield (
+            f"A new film covers {100.0 * (1.0 - np.median(bare)):.0f} % of its tracks by [wear] "
+            f"coverage_thickness: life begins at a race friction of {begin:.3g}, not {whole:.3g} (medians)."
+        )
 
 
 def _tests(rates: Mapping[str, WearRate], solution: Solution) -> Iterator[str]:
