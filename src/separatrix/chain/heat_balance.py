@@ -254,12 +254,8 @@ def _flash(study: Study, heat: Watt, at: RaceContact) -> Kelvin | None:
     :math:`(2/\sqrt\pi)\,(q/2)\,\sqrt{2b/V}/e`: a half-space heated for the time of a pass by the mean of
     the heat over the ellipse, with the effusivity e of the rings' steel.
     """
-    cooling, steel, a, b = (
-        study.cooling,
-        study.bearing.ring_material,
-        at.ellipse.semi_major,
-        at.ellipse.semi_minor,
-    )
+    cooling, steel = study.cooling, study.bearing.ring_material
+    a, b = at.ellipse.semi_major, at.ellipse.semi_minor
     if cooling is None or cooling.steel_conductivity is None or cooling.steel_heat_capacity is None:
         return None
     if steel.density is None or not (a * b * at.rolling_speed):
@@ -301,10 +297,9 @@ def _warmer(study: Study, inlet: Kelvin, known: Temperatures, by_parts: Ratio) -
     outlet = known.coolant_out_temperature
     if outlet is None:
         return
-    leaves, enters = (format_quantity(one, "K", 4) for one in (outlet, inlet))
     hottest, alone = max(filter(None, known[:4])), inlet + by_parts * (outlet - inlet)
+    leaves, enters, part, to = (format_quantity(one, "K", 4) for one in (outlet, inlet, hottest, alone))
     if alone > hottest:
-        part, to = (format_quantity(one, "K", 4) for one in (hottest, alone))
         yield (
             f"Parts of at most {part} cannot heat the coolant to {to}: with so little flow its mean is not "
             "halfway between inlet and outlet, and the parts are warmer than given."
