@@ -290,9 +290,9 @@ def _skids(study: Study, state: BearingState, drag: Newton) -> Iterator[str]:
 
 
 def _warmer(study: Study, inlet: Kelvin, known: Temperatures, by_parts: Ratio) -> Iterator[str]:
-    """Yield that a coolant leaves warmer than its properties reach, or than what heats it.
+    """Yield that a coolant leaves warmer than it boils, than its properties reach, or than what heats it.
 
-    A liquid would boil before. `by_parts` is the share of its heat that the parts give.
+    `by_parts` is the share of its heat that the parts give.
     """
     outlet = known.coolant_out_temperature
     if outlet is None:
@@ -304,12 +304,17 @@ def _warmer(study: Study, inlet: Kelvin, known: Temperatures, by_parts: Ratio) -
             f"Parts of at most {part} cannot heat the coolant to {to}: with so little flow its mean is not "
             "halfway between inlet and outlet, and the parts are warmer than given."
         )
+    is_liquid = fluid_property(study, "latent_heat", inlet) is not None
+    point = study.fluid["data"].get("boiling_temperature") if study.fluid and is_liquid else None
+    if point and outlet > point[0]["value"]:
+        yield (
+            f"The coolant leaves at {leaves}, above its boiling point at 1 atm, "
+            f"{format_quantity(point[0]['value'], 'K', 4)}: it stays liquid under pressure alone."
+        )
     if outlet > (1.0 + NEAR) * inlet:
-        is_liquid = fluid_property(study, "latent_heat", inlet) is not None
-        boils = " At 1 atm it boils before that." if is_liquid else ""
         yield (
             f"The coolant leaves at {leaves} with the properties that it has at {enters}: temperatures are "
-            f"estimates beyond {100.0 * NEAR:.0f} % of it.{boils} More flow keeps it cooler."
+            f"estimates beyond {100.0 * NEAR:.0f} % of it. More flow keeps it cooler."
         )
 
 
