@@ -122,12 +122,33 @@ def test_drag_warms_whichever_ring_turns_the_fluid(study, state, swirl):
     assert found.coolant_out_temperature > 77.0
 
 
+def added(study, state, **changes):
+    """Return the notes that other numbers of the coolant add."""
+    changed = replace(study, cooling=replace(study.cooling, **changes))
+    return set(heat_balance(changed, state).notes) - set(heat_balance(study, state).notes)
+
+
 def test_a_coolant_that_leaves_too_warm_is_noted(study, state):
-    """At 50 g/s it rises by 4 K; a thousandth of it would leave at thousands of kelvin, and boils before."""
-    little = replace(study, cooling=replace(study.cooling, flow=50e-6))
-    (note,) = set(heat_balance(little, state).notes) - set(heat_balance(study, state).notes)
-    assert note.startswith("The coolant leaves at ")
-    assert "At 1 atm it boils before that." in note
+    """At 50 g/s it rises by 5 K beyond its boiling point, at a thousandth of it beyond its properties."""
+    (boils,) = (one for one in heat_balance(study, state).notes if "boiling point at 1 atm, 77.36 K" in one)
+    assert boils.startswith("The coolant leaves at 82 K, above")
+    much = replace(study, cooling=replace(study.cooling, flow=1.0))  # by 0.2 K
+    assert not any("boiling point" in one for one in heat_balance(much, state).notes)
+    assert any("estimates beyond 15 %" in one for one in added(study, state, flow=50e-6))
+
+
+def test_what_numbers_of_a_coolant_cannot_be_is_noted(study, state):
+    """A coolant warmer than the parts that heat it, drag beyond both races, a flash far above its steel."""
+    assert not any("Parts" in one for one in added(study, state, flow=0.03))
+    # the parts' 316 W alone make 5 g/s warmer by 31 K; the inner ring is some 6 K above a mean of 21 K
+    (note,) = (one for one in added(study, state, flow=0.005) if one.startswith("Parts of at most"))
+    assert note.endswith("the parts are warmer than given.")
+    (note,) = added(study, state, steel_heat_capacity=7.0)  # a rise of 86 K at 77 K
+    assert note.startswith("The flash, a rise of 8")
+    slippery = replace(study, film=replace(study.film, race_friction=1e-4))
+    (note,) = set(heat_balance(slippery, state).notes) - set(heat_balance(study, state).notes)
+    least = min(state.inner.load, state.outer.load)
+    assert f"the race with less load, {2e-1 * least:.3g} mN: the balls skid" in note
 
 
 def test_flash_temperatures(study, state):
@@ -173,5 +194,8 @@ def test_a_coolant_that_nobody_knows(tmp_path):
     warm = extended(tmp_path, '[operation]\ntemperature = "200 K"\n[cooling]\nswirl = 0.5\n')
     with pytest.raises(InputError, match=r"toml, line \d+: \[operation\] fluid has no density near 200 K"):
         separatrix.bearing(warm)
+    bare = extended(tmp_path, '[operation]\nfluid = "nitrogen"\n[cooling]\nswirl = 0.5\n')
+    with pytest.raises(InputError, match=r"fluid is not a fluid of the library, .*; got nitrogen\. Write"):
+        separatrix.bearing(bare)
     with pytest.raises(InputError, match=r"\[operation\] fluid is missing beside \[cooling\]"):
         extended(tmp_path, "[cooling]\nswirl = 0.5\n", "ball-218")

@@ -16,6 +16,8 @@ from separatrix.chain.slip_work import TrackWork, track_work
 from separatrix.study.study import Film, KinematicModel, Race, WearRates
 from separatrix.verdict.critical_friction import PLACES, Count, steepness
 from separatrix.verdict.life_table import (
+    FREELY,
+    LEAST_CRITICAL,
     Node,
     _accelerated,
     _bearing_wear,
@@ -227,6 +229,7 @@ def test_debris_grows_a_film_that_does_not_wear_until_the_reservoir_is_empty():
     assert free.films[0][-1, 0] == pytest.approx(0.5 * UM + grown, rel=1e-6)
     ended = course(PHASE, worn(**given, reservoir=1e-30), 1e4)
     assert ended.films[0][-1, 0] < 0.5 * UM + 1e-3 * grown
+    assert ended.clearance == pytest.approx(free.clearance, rel=1e-12)  # its pockets open as before
 
 
 def test_deposit_balances_wear_at_its_fixed_point():
@@ -280,6 +283,59 @@ def test_a_test_at_the_speed_of_the_mission_stands_for_itself():
     assert _accelerated(
         solution, Node(0.2, 30.0, (2.0, 200.0), (0.0, 0.0)), twice, worn()
     ).film_time == pytest.approx(0.5)
+
+
+class Tabulated:
+    """A runner that has every place of a table already, of one critical friction."""
+
+    def __init__(self, critical=0.2):
+        self.node = Node(critical, 30.0, (2.0, 200.0), (0.0, 0.0))
+
+    def work_out(self, _node, places, *, into, load):  # noqa: ARG002
+        """Return the answer of the table."""
+        return into(dict.fromkeys(places, self.node))
+
+
+def test_a_cage_without_candidates_has_the_name_of_its_material_else_of_its_study():
+    """Sentences are on the cages of this name."""
+    study = separatrix.read_study("momentum-wheel")
+    rates = WearRates(film_wear=5e-18, cage_wear=1e-15, bare_friction=0.35)
+    for material, name in ((study.ranking.candidates[0].material, "Vespel SP-3"), (None, "momentum-wheel")):
+        cage = replace(study.cage, ball_cage_friction=0.1, ball_cage_stiffness=1e6, material=material)
+        one = replace(study, ranking=None, wear=rates, cage=cage)
+        found = life(one, revolutions=1e6, draws=64, runner=Tabulated())
+        assert (found.candidate, FREELY in found.notes) == (name, False)
+    # of a critical friction of 0 the cage counts as unstable with any friction
+    assert FREELY in life(one, revolutions=1e6, draws=64, runner=Tabulated(LEAST_CRITICAL)).notes
+
+
+@pytest.mark.parametrize(("holds", "is_thin"), [(1e-7, False), (1e-6, True)])
+def test_a_film_that_does_not_cover_its_tracks_from_the_start_is_noted(holds, is_thin):
+    """1 um of it: a race friction of 0.03 + (0.35 - 0.03)/e, five times that of a verdict."""
+    study = separatrix.read_study("momentum-wheel")
+    rates = WearRates(film_wear=5e-18, cage_wear=1e-15, bare_friction=0.35, coverage_thickness=holds)
+    notes = life(replace(study, wear=rates), revolutions=1e6, draws=64, runner=Tabulated()).notes
+    words = "covers 63 % of its tracks by [wear] coverage_thickness: life begins at a race friction of 0.148,"
+    assert any(words in one for one in notes) is is_thin
+    assert any("life begins" in one for one in notes) is is_thin
+
+
+@pytest.mark.parametrize(
+    ("land", "places"),
+    [
+        (3e-4, (3.0, 4.5, 7.5)),
+        (4e-4, (3.0, 4.0, 4.5, 7.5)),
+        (4.5e-4, (3.0, 4.5, 7.5)),
+        (8e-4, (3.0, 4.5, 7.5)),
+    ],
+)
+def test_the_table_has_the_clearance_at_which_the_land_takes_over(land, places):
+    """A cage of 0.25 mm pockets on a 0.3 mm land was up to 1.5 times as stable between places as by runs."""
+    study = separatrix.read_study("momentum-wheel")
+    rates = WearRates(film_wear=5e-18, cage_wear=1e-15, bare_friction=0.35)
+    one = replace(study, wear=rates, cage=replace(study.cage, land_clearance=land))
+    found = life(one, revolutions=1e6, draws=64, runner=Tabulated())
+    assert 1e4 * found.table.pocket_clearance == pytest.approx(places)
 
 
 @pytest.mark.parametrize(

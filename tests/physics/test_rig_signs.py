@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from commands import extended
 
 import separatrix
 from separatrix import RunOutcome, solve
@@ -58,6 +59,15 @@ def test_a_whirl_gives_its_power_to_the_torque(whirling):
     # the exponent of the cage's part by itself; published: "may go as speed squared"
     assert found.race_exponent < 0.1
     assert found.torque_exponent > found.race_exponent + 0.5
+
+
+def test_the_torque_of_a_fluid_is_not_that_of_the_cage(tmp_path):
+    """It is in the exponent without the cage; and what leaves a range there is a note of the answer."""
+    given = "[cage]\nball_cage_friction = 0.0\nland_friction = 0.0\n[cooling]\nswirl = 0.0\n"
+    answer = separatrix.simulate(extended(tmp_path, given))
+    found = answer.signs
+    assert found.torque_exponent == found.race_exponent > 1.5  # drag goes as speed squared
+    assert 0 < len(found.heat.notes) == len({*found.heat.notes} & {*answer.notes})
 
 
 def circle(history, whirl, end):

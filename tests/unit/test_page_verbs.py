@@ -160,6 +160,72 @@ def test_a_life_of_stable_cages_states_when_the_film_is_gone(half, words):
     assert said.startswith(f"But the inner race has lost its film by {words} rev") if words else said == ""
 
 
+@pytest.mark.parametrize(
+    ("chances", "clearance", "words"),
+    [
+        (
+            (0.9, 0.1, 0.2, 0.35, 0.9),
+            1e-3,
+            "By 1.0e+04 revolutions more are stable again: pockets worn so wide",
+        ),
+        ((0.0, 0.1, 0.5, 0.9, 0.9), 1e-4, "By 1.0e+03 revolutions more are stable again."),
+        ((0.9, 0.8, 0.5, 0.4, 0.4), 1e-3, ""),
+    ],
+)
+def test_a_life_states_when_cages_are_stable_again(chances, clearance, words):
+    """By when more are so, not from when fewest are; the land takes over from wider pockets alone."""
+    rows = [
+        Part({"revolutions": 10.0 ** (1 + i), "probability_stable": one, "pocket_clearance": clearance}, {})
+        for i, one in enumerate(chances)
+    ]
+    said = " ".join(life.again(Part({"course": rows, "cage": Part({"land_clearance": 5e-4}, {})}, {})))
+    assert said.startswith(words) if words else said == ""
+
+
+@pytest.mark.parametrize(
+    ("ends", "start", "words"),
+    [
+        ((0.0, 0.0, 0.0), 1.0, "100 % of the cages of X are unstable from the start."),
+        (
+            (0.0, 0.0, 3e5),
+            0.7,
+            "70 % of the cages of X are unstable from the start. Nine in ten are so by 3.0e+05",
+        ),
+        (
+            (0.0, 2e3, 3e5),
+            0.2,
+            "Half of the cages of X have become unstable by 2.0e+03 revolutions, nine in ten",
+        ),
+    ],
+)
+def test_a_life_that_begins_unstable_has_no_zero_revolutions(ends, start, words):
+    """What is so from the start is a share of the cages."""
+    known = dict(zip(("revolutions_10", "revolutions_50", "revolutions_90"), ends, strict=True))
+    said = " ".join(life.lead(Part({"candidate": "X", "unstable_at_start": start, **known}, {})))
+    assert said.startswith(words)
+    assert "0.0e+00" not in said
+
+
+@pytest.mark.parametrize(("correlation", "words"), [(-0.09, ""), (-0.1, "Measure first: film wear")])
+def test_a_life_that_follows_no_input_asks_for_no_measurement(correlation, words):
+    """Of 1024 draws without dependence 99.7 % have a rank correlation below 3/32."""
+    driver = Part({"name": "wear.film_wear", "correlation": correlation}, {})
+    found = Part({**dict.fromkeys(life.WHY, 0.0), "drivers": [driver], "draws": 1024}, {})
+    said = " ".join(life.why(found))
+    assert said.startswith(words) if words else said == ""
+
+
+@pytest.mark.parametrize(
+    ("test", "mission", "differs"), [(0.9, 0.5, True), (0.5, 0.9, True), (0.9, 0.8, False)]
+)
+def test_an_accelerated_test_of_another_cage_is_not_scaled(test, mission, differs):
+    """Less stable or more: it wears otherwise."""
+    names = ("inner_speed", "critical_friction", "film_time", "pocket_time")
+    run = Part({**dict.fromkeys(names, 1.0), "probability_stable": test}, {"inner_speed": "rad/s"})
+    found = Part({"accelerated": run, "course": [Part({"probability_stable": mission}, {})]}, {})
+    assert ("do not scale" in " ".join(life.faster(found))) is differs
+
+
 @pytest.mark.parametrize("speed", ["3000 rpm", "10 rpm"])
 def test_check_names_the_verbs_that_take_long(tmp_path, speed):
     """Of a dry wheel, and of one as slow as a gimbal; nothing is compiled."""

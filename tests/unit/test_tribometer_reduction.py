@@ -13,7 +13,8 @@ from separatrix.friction.friction_file import Place, place
 from separatrix.friction.logs.column_map import Conditions
 from separatrix.friction.logs.log import RawLog
 from separatrix.friction.reduction import TestFriction, reduce_log
-from separatrix.friction.wear import NO_GROWTH, NO_WAY, TOO_FEW, sample_wear
+from separatrix.friction.wear import FALLS, NO_GROWTH, NO_PRESSURE, NO_WAY, TOO_FEW, sample_wear
+from separatrix.ground.document import Part
 from separatrix.verbs.tribometer import _worn
 
 MEASURED = {"slip_speed": 1.0, "normal_force": 10.0, "temperature": 150.0}
@@ -313,11 +314,11 @@ def test_way_by_speed_and_time():
 
 
 def test_a_depth_that_only_drifts_with_heat_is_said():
-    """A pin that grows longer, or noise alone, is no wear; the test has a flag."""
-    for depth in (-1e-9 * TIME, 1e-7 * NOISE, -1e-7 * NOISE):
+    """A pin that grows longer, a sensor of the other sign, or noise alone is no wear; the test has a flag."""
+    for depth, flag in ((-1e-9 * TIME, FALLS), (1e-7 * NOISE, NO_GROWTH), (-1e-7 * NOISE, NO_GROWTH)):
         found = reduce_log(replace(LOG, wear_depth=depth))
         assert found.wear.wear_coefficient is None
-        assert NO_GROWTH in found.flags
+        assert flag in found.flags
     assert NO_GROWTH not in reduce_log(LOG).flags
 
 
@@ -325,7 +326,7 @@ def test_a_depth_that_only_drifts_with_heat_is_said():
     ("changes", "flag"),
     [
         ({"wear_depth": None}, ""),
-        ({"conditions": Conditions()}, ""),
+        ({"conditions": Conditions()}, NO_PRESSURE),
         ({"distance": None}, NO_WAY),
         ({"distance": None, "time": None, "cycles": TIME}, NO_WAY),
         ({"wear_depth": np.full(TIME.size, np.nan)}, TOO_FEW),
@@ -362,3 +363,6 @@ def test_scatter_of_few_tests_is_that_of_another_test():
         (line,) = _worn(found)
         assert f"a factor of {times} either way" in line
         assert f"({len(tests)} tests)" in line
+    alone = {"wear_coefficient": 1e-15, "wear_error": 1e-18, "conditions": {"material": "PEEK"}}
+    (line,) = _worn([Part(alone, {"wear_error": "m3/(N m)"})])
+    assert "by the noise of this test; tests differ more" in line

@@ -215,7 +215,9 @@ def heat_balance(
         boiling_limit=limit,
         notes=(
             *_beyond(fluid, D, R * abs(orbit - cooling.swirl * ring), max(tracks), limit, study),
-            *_warmer(study, at, known.coolant_out_temperature),
+            *_skids(study, state, abs(drag)),
+            *_warmer(study, at, known, 1.0 - in_fluid / sum(heat) if in_fluid else 1.0),
+            *_hot(at, max(flash_inner or 0.0, flash_outer or 0.0)),
         ),
     )
 
@@ -226,6 +228,11 @@ def _required(study: Study, name: str, temperature: Kelvin) -> float:
     if found is None:
         rule = f"has no {name.replace('_', ' ')} near {format_quantity(temperature, 'K')} in the library"
         cure = "Leave [cooling] out, or state it in a library file of your own."
+        if study.fluid is None:
+            rule = "is not a fluid of the library, which [cooling] needs"
+            cure = (
+                'Write its state, too: "liquid nitrogen", "GHe"; `separatrix materials list` has the names.'
+            )
         where = f"{study.place('operation.fluid')}: [operation] fluid"
         raise InputError(where, rule, str(study.operation.fluid), cure)
     return found
@@ -247,12 +254,8 @@ def _flash(study: Study, heat: Watt, at: RaceContact) -> Kelvin | None:
     :math:`(2/\sqrt\pi)\,(q/2)\,\sqrt{2b/V}/e`: a half-space heated for the time of a pass by the mean of
     the heat over the ellipse, with the effusivity e of the rings' steel.
     """
-    cooling, steel, a, b = (
-        study.cooling,
-        study.bearing.ring_material,
-        at.ellipse.semi_major,
-        at.ellipse.semi_minor,
-    )
+    cooling, steel = study.cooling, study.bearing.ring_material
+    a, b = at.ellipse.semi_major, at.ellipse.semi_minor
     if cooling is None or cooling.steel_conductivity is None or cooling.steel_heat_capacity is None:
         return None
     if steel.density is None or not (a * b * at.rolling_speed):
@@ -275,15 +278,53 @@ def boiling_limit(study: Study, temperature: Kelvin) -> WattPerMetre2 | None:
     return float(0.131 * latent * math.sqrt(vapour) * (tension * GRAVITY * (liquid - vapour)) ** 0.25)
 
 
-def _warmer(study: Study, inlet: Kelvin, outlet: Kelvin | None) -> Iterator[str]:
-    """Yield that a coolant leaves warmer than its properties reach; a liquid would boil before."""
-    if outlet is not None and outlet > (1.0 + NEAR) * inlet:
-        leaves, enters = (format_quantity(one, "K", 4) for one in (outlet, inlet))
-        is_liquid = fluid_property(study, "latent_heat", inlet) is not None
-        boils = " At 1 atm it boils before that." if is_liquid else ""
+def _skids(study: Study, state: BearingState, drag: Newton) -> Iterator[str]:
+    """Yield that the races cannot push a ball through the fluid; both push alike: its spin is steady."""
+    holds = 2.0 * study.film.race_friction * min(state.inner.load, state.outer.load)
+    if drag > holds:
+        takes, most = format_quantity(drag, "N", 3), format_quantity(holds, "N", 3)
+        yield (
+            f"The drag on a ball, {takes}, exceeds twice the friction of the race with less load, {most}: "
+            "the balls skid, and torque, heat and temperatures are not those of this bearing."
+        )
+
+
+def _warmer(study: Study, inlet: Kelvin, known: Temperatures, by_parts: Ratio) -> Iterator[str]:
+    """Yield that a coolant leaves warmer than it boils, than its properties reach, or than what heats it.
+
+    `by_parts` is the share of its heat that the parts give.
+    """
+    outlet = known.coolant_out_temperature
+    if outlet is None:
+        return
+    hottest, alone = max(filter(None, known[:4])), inlet + by_parts * (outlet - inlet)
+    leaves, enters, part, to = (format_quantity(one, "K", 4) for one in (outlet, inlet, hottest, alone))
+    if alone > hottest:
+        yield (
+            f"Parts of at most {part} cannot heat the coolant to {to}: with so little flow its mean is not "
+            "halfway between inlet and outlet, and the parts are warmer than given."
+        )
+    is_liquid = fluid_property(study, "latent_heat", inlet) is not None
+    point = study.fluid["data"].get("boiling_temperature") if study.fluid and is_liquid else None
+    if point and outlet > point[0]["value"]:
+        yield (
+            f"The coolant leaves at {leaves}, above its boiling point at 1 atm, "
+            f"{format_quantity(point[0]['value'], 'K', 4)}: it stays liquid under pressure alone."
+        )
+    if outlet > (1.0 + NEAR) * inlet:
         yield (
             f"The coolant leaves at {leaves} with the properties that it has at {enters}: temperatures are "
-            f"estimates beyond {100.0 * NEAR:.0f} % of it.{boils} More flow keeps it cooler."
+            f"estimates beyond {100.0 * NEAR:.0f} % of it. More flow keeps it cooler."
+        )
+
+
+def _hot(temperature: Kelvin, flash: Kelvin) -> Iterator[str]:
+    """Yield that a flash leaves the temperature at which the steel's properties are stated."""
+    if flash > temperature:  # at twice the temperature those of a cold steel have changed several times
+        rise, cold = format_quantity(flash, "K", 3), format_quantity(temperature, "K", 4)
+        yield (
+            f"The flash, a rise of {rise}, has the conductivity and heat capacity of steel at {cold}: it is "
+            "too high where they grow with temperature."
         )
 
 

@@ -284,7 +284,7 @@ def reduction(log: RawLog, cut: Place | None = None) -> Reduction:
         mean=mean,
     )
     worn = sample_wear(log, one.test.conditions, steady_rows)
-    has_none = log.wear_depth is not None and one.test.conditions.pressure and not worn.wear_coefficient
+    has_none = log.wear_depth is not None and not worn.wear_coefficient
     sentences = (
         *(event.sentence for event in events),
         *flags(one),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -19,6 +19,16 @@ SURE = 2.0
 NO_GROWTH = (
     "The wear depth does not grow beyond its noise over the steady part (heat moves it, too): no wear "
     "coefficient."
+)
+
+FALLS = (
+    "The wear depth falls over the steady part (a pin that warms grows): no wear coefficient. If wear counts "
+    "as negative, write `sign = -1` for wear_depth in a column map."
+)
+
+NO_PRESSURE = (
+    "The wear depth makes no wear coefficient without the pressure: give it, or the pin_diameter or "
+    "contact_area, in a column map."
 )
 
 NO_WAY = (
@@ -77,9 +87,14 @@ def sample_wear(log: RawLog, conditions: Conditions, steady: slice) -> SampleWea
 
 
 def why_none(log: RawLog, conditions: Conditions, steady: slice) -> str:
-    """Why a log with a wear depth and a pressure has no wear coefficient, a sentence."""
+    """Why a log with a wear depth has no wear coefficient, a sentence."""
     way = slid(log, conditions)
     if way is None or log.wear_depth is None:
         return NO_WAY
-    there = np.isfinite(np.asarray(log.wear_depth)[steady]) & np.isfinite(way[steady])
-    return TOO_FEW if there.sum() < 2 * STRETCHES else NO_GROWTH
+    if conditions.pressure is None:
+        return NO_PRESSURE
+    depth = np.asarray(log.wear_depth)
+    if np.isfinite(depth[steady] + way[steady]).sum() < 2 * STRETCHES:
+        return TOO_FEW
+    falls = sample_wear(replace(log, wear_depth=-depth), conditions, steady).wear_coefficient
+    return FALLS if falls else NO_GROWTH

@@ -31,7 +31,7 @@ def compute(study: Study, options: NoOptions) -> BearingState:  # noqa: ARG001
     solution = solve(study)
     found, clearances = solution.bearing, solution.clearances
     heat = heat_balance(study, found)
-    notes = (*solution.notes, *(heat.notes if heat else ()))
+    notes = (*(heat.notes if heat else ()), *solution.notes)  # on a screen only the first are shown
     return replace(found, clearances=clearances, heat=heat, pair=solution.pair, notes=notes)
 
 

@@ -3,15 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from math import inf
+from dataclasses import dataclass, replace
+from math import inf, sqrt
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 from separatrix.ground.document import Part
 from separatrix.ground.errors import InputError
 from separatrix.ground.units import parse
-from separatrix.present.blocks import Heading, Level, Note, Page, Picture, Table, facts, text_column
+from separatrix.present.blocks import (
+    Cell,
+    Column,
+    Heading,
+    Level,
+    Note,
+    Page,
+    Picture,
+    Table,
+    facts,
+    text_column,
+)
 from separatrix.present.figure import BLUE, GREEN, VERMILION, Across, Band, Figure, Panel, Trace
 from separatrix.present.quantity_text import all_numbers, axis, column, fill, quantity, show
 from separatrix.verbs.parts.answer_page import figure, page_of
@@ -83,7 +94,8 @@ def page(answer: Part) -> Page:
     state = answer.values["study"]["cage"]["clearances"]["value"]
     when = "" if state == "as running" else f", {state}"
     heads = {f"{one}_clearance": f"{one} clearance{when}" for one in ("pocket", "land")}
-    columns = tuple(column(name, head=heads.get(name, "")) for name in COURSE if name in rows[0])
+    turned, *more = (column(name, head=heads.get(name, "")) for name in COURSE if name in rows[0])
+    columns = turned, Column("time", lambda row: Cell(row.time, HOURS, "s")), *more
     drivers = (text_column("input", lambda row: row.name), column("correlation"))
     return page_of(
         answer,
@@ -111,6 +123,7 @@ def page(answer: Part) -> Page:
 
 
 SHOWN, LISTED = 12, 6
+HOURS = replace(quantity("time"), unit="h", form=".1e")
 COURSE = (
     *("revolutions", "probability_stable", "first_decile", "last_decile", "film_inner", "film_outer"),
     *("race_friction", "pocket_friction", "pocket_clearance", "land_clearance"),
@@ -132,16 +145,19 @@ DRIVEN = (
 
 def lead(answer: Part) -> Iterator[str]:
     """Yield after how many revolutions the cage is unstable."""
-    whose = f"of the cages of {answer.candidate}"
-    if "revolutions_50" in answer:
+    whose, half = f"of the cages of {answer.candidate}", answer.get("revolutions_50")
+    if half is None:
+        yield fill(answer, f"Up to {{horizon}} revolutions {{never_unstable}} {whose} never become unstable.")
+    elif half > 0.0:
         words = f"Half {whose} have become unstable by {{revolutions_50}} revolutions"
-        words += ", a tenth by {revolutions_10}"
+        words += ", a tenth by {revolutions_10}" * (answer.revolutions_10 > 0.0)
         words += ", nine in ten by {revolutions_90}" * ("revolutions_90" in answer)
         yield fill(answer, f"{words}.")
-    else:
-        yield fill(answer, f"Up to {{horizon}} revolutions {{never_unstable}} {whose} never become unstable.")
     if answer.unstable_at_start > 0.0:
-        yield fill(answer, "{unstable_at_start} of them are unstable from the start.")
+        those = whose if half == 0.0 else "of them"
+        yield fill(answer, f"{{unstable_at_start}} {those} are unstable from the start.")
+    if half == 0.0 < (answer.get("revolutions_90") or 0.0):
+        yield fill(answer, "Nine in ten are so by {revolutions_90} revolutions.")
 
 
 BARE = 0.1
@@ -167,28 +183,32 @@ WHY = {
 }
 
 
+SURE = 3.0
+"""Rank correlation over its standard error without dependence, from which an input is worth a measurement."""
+
+
 def why(answer: Part) -> Iterator[str]:
     """Yield what ends it, and what to measure."""
     shares = sorted(((getattr(answer, name), name) for name in WHY), reverse=True)
     known = [f"{show(answer, name)} because {WHY[name]}" for share, name in shares if share >= 0.05]
     if known:
         yield f"Of those that become so, {', '.join(known)}."
-    if answer.drivers:
-        first = answer.drivers[0]
+    first = answer.drivers[0] if answer.drivers else None
+    if first and abs(first.correlation) > SURE / sqrt(answer.draws):
         yield f"Measure first: {quantity(first.name).label} (rank correlation {show(first, 'correlation')})."
 
 
 def again(answer: Part) -> Iterator[str]:
-    """Yield that cages become stable again where worn pockets leave them to their land."""
-    least = min(answer.course, key=lambda row: row.probability_stable)
-    last, land = answer.course[-1], answer.cage.get("land_clearance")
-    is_by_land = land is not None and last.pocket_clearance > land
-    if is_by_land and last.probability_stable > least.probability_stable + 0.2:
-        yield fill(
-            least,
-            "From {revolutions} revolutions on more are stable again: pockets worn so wide leave the cage to "
-            "its land.",
-        )
+    """Yield when cages become stable again, and whether worn pockets leave them to their land by then."""
+    worst = 1.0
+    for row in answer.course:
+        worst = min(worst, row.probability_stable)
+        if row.probability_stable > worst + 0.2:
+            land = answer.cage.get("land_clearance")
+            by_land = land is not None and row.pocket_clearance > land
+            words = ": pockets worn so wide leave the cage to its land." if by_land else "."
+            yield fill(row, f"By {{revolutions}} revolutions more are stable again{words}")
+            return
 
 
 def faster(answer: Part) -> Iterator[str]:
@@ -202,7 +222,7 @@ def faster(answer: Part) -> Iterator[str]:
         "{probability_stable} with a new cage; an hour of it wears the films as {film_time} hours of this "
         "duty, the pockets of a calm cage as {pocket_time}.",
     )
-    if test.probability_stable < answer.course[0].probability_stable - 0.2:
+    if abs(test.probability_stable - answer.course[0].probability_stable) > 0.2:
         yield "Its cage moves otherwise than that of the mission: do not scale its wear to the mission."
 
 

@@ -31,7 +31,7 @@ STEADY = 0.5
 FREE = "free: with one state the motion lasts with forces above what the races hold"
 
 SIGNS = (
-    "A stable cage leaves the torque to balls on races. A whirl is heard, and shows by a torque that "
+    "A stable cage leaves the torque to balls and fluid. A whirl is heard, and shows by a torque that "
     "grows faster with speed than theirs, towards its square (Lewis and others, 44th AMS 2018)."
 )
 
@@ -106,7 +106,8 @@ def compute(study: Study, options: Options) -> SimulationAnswer:
     heat = cage.land_friction * history.rubbing_force * history.rubbing_speed
     name = made_of.name if made_of else "The cage"
     moved = Moved(name, history.largest_contact_force, history.largest_offset)
-    notes = *solution.notes, *cage.notes, *of.extrapolation_notes(solution), *beyond_motion(solution, [moved])
+    notes = *(signs.heat.notes if signs and signs.heat else ()), *solution.notes, *cage.notes
+    notes += *of.extrapolation_notes(solution), *beyond_motion(solution, [moved])
     return SimulationAnswer(
         solution=solution,
         cage=cage,
@@ -222,7 +223,7 @@ def sign_blocks(answer: Part) -> list[Block]:
     )
     law = f"none: at 0.8 of the speed the same run {answer.slower_outcome}, here it {answer.signs_outcome}"
     if "torque_exponent" in answer:
-        law = "{torque_exponent} from 0.8 of the speed ({slower_torque}) on; balls on races {race_exponent}"
+        law = "{torque_exponent} from 0.8 of the speed ({slower_torque}) on; without the cage {race_exponent}"
     balls = f"free, by which this run {answer.signs_outcome}" if answer.signs_with_free_balls else None
     return [
         Heading("Signs on a test rig"),

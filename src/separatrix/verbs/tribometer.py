@@ -243,7 +243,10 @@ def _worn(tests: Sequence[Part]) -> Iterator[str]:
         logs = [math.log(one.wear_coefficient) for one in worn]
         words = f"Wear coefficient of {name}: {alone(math.exp(fmean(logs)), known, 'm3/(N m)')}"
         if len(worn) == 1:
-            yield fill(worn[0], f"{words} (standard error {{wear_error}}).")
+            yield fill(
+                worn[0],
+                f"{words} (standard error {{wear_error}} by the noise of this test; tests differ more).",
+            )
         else:
             from scipy.special import stdtrit
 

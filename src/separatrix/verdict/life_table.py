@@ -70,6 +70,14 @@ NO_EXPONENT = (
     "The land opens, but its critical friction is beyond what was searched: it stays that of a new land."
 )
 
+LEAST_CRITICAL: Ratio = 1e-3
+"""Of the table, for the logarithm of one that is 0."""
+
+FREELY = (
+    "At places of the table the cage whirls without friction in its pockets (the land may drive it): there "
+    "it counts as unstable with any, although friction may calm it."
+)
+
 NARROWER = (1.0, 0.5, 0.2, 0.05)
 """Parts of that widening, the first that the gap between the balls allows."""
 
@@ -166,6 +174,8 @@ def life(
     clearances = _clearances(study, "cage.pocket_clearance", solution.stated_design.pocket_clearance)
     land = solution.stated_design.land_clearance or 0.0
     lands = _clearances(study, "cage.land_clearance", land) if _land(solution) else [land]
+    if clearances[0] < land < clearances[-1]:  # where pockets leave the cage to it the limit changes its law
+        clearances = sorted({*clearances, land})
     parts = [(share, varied(study, one)) for share, one in _shared(cases)]
     phases = [_duty(one, candidate, share) for share, one in parts if _turns(one)]  # nothing wears at rest
     if not phases:
@@ -187,7 +197,7 @@ def life(
         if len(found) < len(places):
             raise Interrupted
         notes = [*_notes(found, fixed, assumed), *_tests(rates, solution), *solution.notes]
-        notes += [NO_WIDTH] if land and not lands[1:] else []
+        notes += [*_thin(worn), *([NO_WIDTH] if land and not lands[1:] else [])]
         each = [
             Phase(
                 share=one.share,
@@ -198,7 +208,8 @@ def life(
         ]
         tested = _accelerated(test.solution, found[places[-1]], each, worn) if test else None
         speed = sum(one.share * _turns(one.solution.study) for one in phases)
-        name = candidate.name if candidate else "the cage"
+        made_of = candidate or (study.cage and study.cage.material)
+        name = (made_of and made_of.name) or study.name
         return _life(name, each, worn, inputs, speed, revolutions, tested, notes)
 
     places = list(itertools.product(range(len(phases)), range(FRICTIONS), range(len(clearances))))
@@ -237,6 +248,17 @@ def wear_rates(study: Study, wear: WearRates, candidate: Candidate | None) -> di
     if problems:
         raise together(problems)
     return found
+
+
+def _thin(worn: Worn) -> Iterator[str]:
+    """A sentence on a new film that does not cover its tracks: by a tenth, as good as the table is."""
+    bare, whole = np.exp(-worn.thickness / worn.coverage), float(np.median(worn.film_friction))
+    begin = float(np.median(worn.film_friction + bare * (worn.bare_friction - worn.film_friction)))
+    if begin > 1.1 * whole:
+        yield (
+            f"A new film covers {100.0 * (1.0 - np.median(bare)):.0f} % of its tracks by [wear] "
+            f"coverage_thickness: life begins at a race friction of {begin:.3g}, not {whole:.3g} (medians)."
+        )
 
 
 def _tests(rates: Mapping[str, WearRate], solution: Solution) -> Iterator[str]:
@@ -343,7 +365,7 @@ def _node(solution: Solution, settings: StabilitySettings, runner: Runner) -> No
     """Critical friction at a place, and the work of the pockets below and above it."""
     limit = cage_limit(solution, settings, runner)
     at = limit.own_critical_friction
-    critical = SEARCHED_FRICTION if at is None else max(at, 1e-3)
+    critical = SEARCHED_FRICTION if at is None else max(at, LEAST_CRITICAL)
     ball = BallModel.FREE if limit.critical_ball == "free" else None
 
     def sliding(friction: Ratio, *, whirls: bool) -> tuple[Watt, Watt]:
@@ -447,7 +469,8 @@ def _drawn(
 
 
 def _notes(found: Mapping[Place, Node], fixed: list[str], assumed: list[str]) -> list[str]:
-    notes = [note for one in found.values() for note in one.notes]
+    is_free = any(one.critical <= LEAST_CRITICAL for one in found.values())
+    notes = [FREELY] * is_free + [note for one in found.values() for note in one.notes]
     if assumed:
         words = ", ".join(name.removeprefix("wear.") for name in assumed)
         notes.append(f"Stated without a distribution, a factor of {DECADE:g} either way is assumed: {words}.")

@@ -41,7 +41,7 @@ class RigSigns:
     slower_outcome: RunOutcome  # of the same run where all speeds are 0.8 of these
     slower_torque: NewtonMetre  # of that run
     torque_exponent: Ratio | None  # of torque against speed between both; null where one of them whirls alone
-    race_exponent: Ratio  # the same of the friction of balls on races by itself
+    race_exponent: Ratio  # the same without the cage: of balls on races and of the fluid
     heat: HeatBalance | None  # with the fluid; null without [cooling]
 
 
@@ -63,7 +63,7 @@ def slower(solution: Solution) -> Solution:
 
 def rig_signs(this: Followed, other: Followed) -> RigSigns:
     """Signs of a run, one that lasts followed until it has grown; `other` is that of the `slower` chain."""
-    (torque, of_cage, pockets, heat), (less, *_) = shaft_torque(*this), shaft_torque(*other)
+    (torque, of_cage, pockets, heat), (less, cage_less, *_) = shaft_torque(*this), shaft_torque(*other)
     _, cage, history = this
     line, share = heard(cage, history)
     return RigSigns(
@@ -78,7 +78,7 @@ def rig_signs(this: Followed, other: Followed) -> RigSigns:
         slower_outcome=other[2].outcome,
         slower_torque=less,
         torque_exponent=_exponent(torque, less) if lasts(history) == lasts(other[2]) else None,
-        race_exponent=_exponent(*(one.bearing.equilibrium.friction_torque for one in (this[0], other[0]))),
+        race_exponent=_exponent(torque - of_cage, less - cage_less),
         heat=heat,
     )
 

@@ -100,7 +100,7 @@ class Worn(NamedTuple):
     pocket_friction: Array  # at the start
     worn_friction: Array  # of a pocket that is worn deep
     worn_depth: Array  # by which its friction has gone 63 % of the way
-    reservoir: Array  # volume of the cage that may be worn off, infinite without one [m3]
+    reservoir: Array  # volume worn off the pockets from which on nothing stays, infinite without one [m3]
 
 
 class Land(NamedTuple):
@@ -201,14 +201,14 @@ def course(phases: Sequence[Phase], worn: Worn, horizon: Second) -> Course:
     for now in time:
         *_, sliding, on_land = _state(phases, worn, films, volume, land_volume)
         step = now - before
-        debris = worn.cage_wear * sliding * (volume < worn.reservoir)
-        deposit = (worn.transferred * debris / area)[:, None]
+        debris = worn.cage_wear * sliding
+        deposit = (worn.transferred * debris * (volume < worn.reservoir) / area)[:, None]
         fastest = np.zeros(draws)
         for i, passed in enumerate(work):
             wear = worn.film_wear[:, None] * passed
             films[i] = film_after(films[i], wear, deposit, hold, step)
             fastest = np.maximum(fastest, wear.max(axis=1))
-        volume = np.minimum(volume + debris * step, worn.reservoir)
+        volume = volume + debris * step
         land_volume = land_volume + worn.cage_wear * on_land * step
         state = _state(phases, worn, films, volume, land_volume)
         kept = np.divide(deposit[:, 0], fastest, out=np.full(draws, math.inf), where=fastest > 0.0)
