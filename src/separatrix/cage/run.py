@@ -50,12 +50,16 @@ LEAST_HELD = np.float32(0.02)
 
 @inlined
 def around(s, p, places, waves, turned):
-    """What a ball has at its azimuth: speed of its free orbit beyond the ball set's; how races hold it."""
+    """What a ball has at its azimuth: speed of its free orbit beyond the ball set's; how races hold it.
+
+    Halfway through the step that begins, for all of it.
+    """
     power, lanes = turned[2 * LANES :], turned.size // 4
     for j in range(places.shape[0]):
         q = places[j]
         for l in range(lanes):
-            c, n = s[TURN_COSINE + l], s[TURN_SINE + l]
+            half = HALF * p[STEP + l] * p[ORBIT + l] * s[RAMP + l]
+            c, n = s[TURN_COSINE + l] - half * s[TURN_SINE + l], s[TURN_SINE + l] + half * s[TURN_COSINE + l]
             turned[l] = power[l] = q[COSINE + l] * c - q[SINE + l] * n
             turned[LANES + l] = power[LANES + l] = q[SINE + l] * c + q[COSINE + l] * n
             q[OWN_SPEED + l] = q[BY_SIZE + l]
@@ -361,8 +365,7 @@ def queue(ball: int, space: bool, level: bool = False, real: type = np.float32) 
                         break
                 speed_up(s, a, p)
                 for stage in range(4):
-                    # the second stage is at the time of the third, the last at that of the next first one
-                    if waves.shape[0] > 0 and (stage % 2 == 1 or (i == 0 and stage == 0)):
+                    if waves.shape[0] > 0 and stage == 0:
                         around(t, p, places, waves, turned)
                     rates(t, d, t_balls, d_balls, a, p, places, strips, ball, space, level, lobe_number)
                     if stage == 0:

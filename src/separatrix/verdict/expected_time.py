@@ -13,9 +13,9 @@ from separatrix.chain.solution import Solution
 from separatrix.ground.units import Second
 from separatrix.verdict.long_jobs import Load, Runner
 
-PACE, UNEVEN = 1e8, 0.12
+PACE, UNEVEN = 1e8, 0.22
 """Steps of a ball that one core computes in a second, and the part of them that it does among uneven orbits,
-where verdicts also ask for more runs.
+where a verdict also asks for two frictions.
 
 From 0.55e8 in space to 1.7e8 of balls that are dampers, on a server of 2026.
 """
@@ -43,7 +43,8 @@ def time_of_runs(solution: Solution, runs: float) -> Second:
     """Time that one core takes for runs of a cage, within a factor of 3.
 
     A motion that the balls damp little is followed through more of its longest time. With even orbits
-    the time of `rank` was 0.7 to 1.9 times the true one, of 15 to 180 s; for `lox-turbopump-radial` 0.65.
+    the time of `rank` was 0.7 to 1.9 times the true one, of 15 to 180 s; with uneven ones 0.4 to 3.2 times,
+    of 15 to 375 s (six bearings).
     """
     cage = turned_forward(moving_cage(solution, 0.0))
     settings = settings_for(solution.study.stability, cage)

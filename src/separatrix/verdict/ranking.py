@@ -339,12 +339,10 @@ def _load(question: _Question, piece: Piece) -> Load:
     kicks, settings = len(question.settings.kicks), question.settings
     if isinstance(piece, Longer):
         return Load(LANES, dear=20.0)
-    if isinstance(piece, Case) or (isinstance(piece, Asked) and piece.is_paper):
+    if not isinstance(piece, Limit):
         return Load(kicks * settings.runs)
-    highest = max(key.friction for key in question.keys) if isinstance(piece, Limit) else piece.friction
-    free = free_work(question.cages[piece.pocket], settings, highest)
-    runs = expected_load(settings, band=False).runs if isinstance(piece, Limit) else settings.runs
-    return Load(kicks * runs * (1.0 + free), 3.0 if isinstance(piece, Limit) else 1.0, free > 0.0)
+    free = free_work(question.cages[piece.pocket], settings, max(key.friction for key in question.keys))
+    return Load(kicks * expected_load(settings, band=False).runs * (1.0 + free), 3.0, free > 0.0)
 
 
 def _computed(question: _Question, piece: Piece) -> object:
