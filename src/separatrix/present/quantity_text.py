@@ -94,6 +94,7 @@ QUANTITIES: dict[str, Quantity] = {
     "last_decile": Q(label="P(stable) of the last tenth", head="last tenth", form=".2f"),
     "correlation": Q(label="rank correlation", form="+.2f"),
     "draws": Q(label="bearings drawn", form=".0f"),
+    "never_unstable": Q(label="never unstable", unit="%", digits=3),
     "coverage_calm": Q(label="coverage where deposit of a calm cage balances wear", unit="%", digits=2),
     "coverage_whirling": Q(label="the same of a cage that whirls", unit="%", digits=2),
     "film_time": Q(label="duty that an hour of the test wears the films for, in hours", digits=3),
@@ -238,7 +239,7 @@ QUANTITIES: dict[str, Quantity] = {
 }
 
 SHARES = (
-    *("unstable_at_start", "never_unstable", "film_worn", "pocket_opened", "land_opened"),
+    *("unstable_at_start", "film_worn", "pocket_opened", "land_opened"),
     *("friction_risen", "reservoir_empty", "film_sustained"),
 )
 """Shares of drawn bearings."""
