@@ -55,7 +55,11 @@ class Made:
 
 def made(recipe: Recipe, rng: np.random.Generator, *, knows_cycle: bool = True) -> Made:
     """Return a log of a recipe."""
-    time = _times(recipe, rng)
+    steps = np.full(recipe.rows - 1, recipe.step)
+    if recipe.irregular:
+        steps *= rng.uniform(0.3, 1.7, steps.size)
+        steps[: steps.size // 3] *= 0.5
+    time = np.concatenate([[0.0], np.cumsum(steps)])
     length, x = time[-1], time / time[-1]
     cycle = recipe.rows_of_a_cycle * recipe.step
     friction = recipe.friction + recipe.drift * (x - 0.5) + noise(recipe, time, rng)
@@ -91,14 +95,6 @@ def remembered(white: np.ndarray, keep: np.ndarray) -> np.ndarray:
     for i, k in enumerate(keep.tolist(), start=1):
         out[i] = k * out[i - 1] + (1.0 - k * k) ** 0.5 * white[i]
     return out
-
-
-def _times(recipe: Recipe, rng: np.random.Generator) -> np.ndarray:
-    steps = np.full(recipe.rows - 1, recipe.step)
-    if recipe.irregular:
-        steps *= rng.uniform(0.3, 1.7, steps.size)
-        steps[: steps.size // 3] *= 0.5
-    return np.concatenate([[0.0], np.cumsum(steps)])
 
 
 def _kept(recipe: Recipe, rows: int, rng: np.random.Generator) -> np.ndarray:

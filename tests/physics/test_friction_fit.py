@@ -88,12 +88,7 @@ TOGETHER = "slip speed and pressure went together: slope on their product pV"
 FALLS = "pressure fell as slip speed rose: slope on slip speed, for both"
 POWER_LAWS = {  # exponents of speed and pressure, tests at (m/s, MPa), the slopes found, what is noted
     "both": ((0.2, -0.1), PAIRS, {"slip_speed": 0.2, "pressure": -0.1}, ()),
-    "risen together": (
-        (0.15, 0.15),
-        [(v, v) for v in (1, 2, 3, 5)],
-        {"pressure_velocity": 0.15},
-        (TOGETHER,),
-    ),
+    "alike": ((0.15, 0.15), [(v, v) for v in (1, 2, 3, 5)], {"pressure_velocity": 0.15}, (TOGETHER,)),
     "one pV": ((0.2, 0.0), [(v, 10.0 / v) for v in (1, 2, 5, 10)], {"slip_speed": 0.2}, (FALLS,)),
     "nearly one pV": ((0.2, 0.0), [(1, 10), (2, 5.25), (5, 2), (10, 1)], {"slip_speed": 0.2}, (FALLS,)),
 }

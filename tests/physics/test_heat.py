@@ -19,14 +19,10 @@ from separatrix.chain.heat_balance import (
     temperatures,
 )
 from separatrix.ground.errors import InputError
-from separatrix.study.study import Cooling, Guidance
+from separatrix.study.study import Guidance
 
 LN2 = Fluid(807.9576, 1.63216e-4)  # 77 K, 2 bar
 ORBIT, SPEED, RADIUS = 668.9886, 500.0 * math.pi, 0.0325
-COOLING = Cooling(
-    swirl=0.5, flow="50 g/s", race_conductance="5 W/K", inner_cooling="20 W/K", outer_cooling="30 W/K",
-    ball_cooling="25 W/K",
-)  # fmt: skip
 
 
 @pytest.fixture(scope="module")
@@ -68,11 +64,11 @@ def test_fluid_on_spin_and_faces():
     assert cylinder_moment(LN2, 0.029, 0.014, SPEED - ORBIT) == pytest.approx(0.04271, rel=1e-3)
 
 
-def test_steady_temperatures():
+def test_steady_temperatures(study):
     """Of another program, whose heats are known to 0.05 mW a ball: 13/2 of that over 25 W/K."""
     inner, outer = 13 * 17.2370 / 2, 13 * 7.1120 / 2
     heat = Heat(inner, inner + outer, outer, 0.0, 0.0)
-    found = temperatures(heat, COOLING, 0.05, 2038.67, 77.0)
+    found = temperatures(heat, replace(study.cooling, cage_cooling=None), 0.05, 2038.67, 77.0)
     assert found == pytest.approx((84.159569, 84.179123, 80.677252, None, 80.105330), abs=1.3e-5)
 
 

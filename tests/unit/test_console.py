@@ -224,12 +224,8 @@ def wait() -> None:
         time.sleep(0.01)
 
 
-def never_ends() -> None:
-    """Be a kernel that hears nothing, as far as a test can wait."""
-    HELD.wait()
-
-
 HELD = threading.Event()
+"""Its wait is a kernel that hears nothing, as far as a test can wait."""
 
 
 @pytest.fixture
@@ -262,7 +258,7 @@ def test_work_that_hears_no_interrupt_is_left_behind(monkeypatch):
     monkeypatch.setattr(console, "PATIENCE", 0.1)
     before = threading.enumerate()
     with pytest.raises(console.LeftBehind):
-        console.breakable(never_ends)
+        console.breakable(HELD.wait)
     (left,) = (one for one in threading.enumerate() if one not in before)
     HELD.set()
     left.join(60.0)

@@ -30,7 +30,10 @@ def test_files_and_most_functions_are_short_and_floating_point_is_strict():
         text = path.read_text(encoding="utf-8")
         assert not re.search(r"fastmath\s*=\s*True|parallel\s*=\s*True", text), path
         assert len(text.splitlines()) < LIMIT, path
-        sizes += _sizes(ast.parse(text))
+        for node in ast.walk(ast.parse(text)):
+            if isinstance(node, ast.FunctionDef):
+                body = node.body[1:] if ast.get_docstring(node) else node.body
+                sizes.append(node.end_lineno - body[0].lineno + 1 if body else 0)
     assert sorted(sizes)[int(0.95 * len(sizes))] < 40
 
 
@@ -41,15 +44,6 @@ def test_nothing_names_a_machine_or_an_index():
     for path in (*TEXTS, *root):
         text = path.read_text(encoding="utf-8", errors="replace")
         assert not re.search(r"/(home|root|work|Users|tmp)/\w|index-url|https?://\S*/simple", text), path
-
-
-def _sizes(tree: ast.AST) -> list[int]:
-    sizes = []
-    for node in ast.walk(tree):
-        if isinstance(node, ast.FunctionDef):
-            body = node.body[1:] if ast.get_docstring(node) else node.body
-            sizes.append(node.end_lineno - body[0].lineno + 1 if body else 0)
-    return sizes
 
 
 def compiled(tree: ast.Module) -> dict[str, str]:

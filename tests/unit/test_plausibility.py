@@ -29,15 +29,12 @@ def notes(study: Study) -> list[str]:
 
 
 STATIC = {
-    "DN": (
-        operated(inner_speed=400_000 * math.pi / 30.0),
-        "DN 20 million (bore in mm times speed in rpm) exceeds 3 million",
-    ),
+    "DN": (operated(inner_speed=41_888.0), "DN 20 million (bore in mm times speed in rpm) exceeds 3 million"),
     "DN without a bore": (
         replace(operated(inner_speed=8000.0), bearing=replace(SHIPPED.bearing, bore=None)),
         "DN 4.97 million (pitch diameter in mm times speed in rpm)",
     ),
-    "race friction": (
+    "friction": (
         replace(SHIPPED, film=replace(SHIPPED.film, race_friction=1.9)),
         "race_friction 1.9 exceeds 1",
     ),

@@ -117,11 +117,8 @@ def test_where_eta_differs_the_margin_ranks():
     rows = [ranked(name, stiffness, eta, t, 0.02) for name, stiffness, eta, t in given]
     known = {row.name: MeanFriction(0.1, 0.01) for row in rows}
     margins = [margin_interval(row) for row in rows]
-    assert ranks(margins, lambda i, leader: same_rank(rows[i], rows[leader], known, margin_interval)) == [
-        3,
-        1,
-        2,
-    ]
+    found = ranks(margins, lambda i, leader: same_rank(rows[i], rows[leader], known, margin_interval))
+    assert found == [3, 1, 2]
 
 
 def test_who_may_have_the_lower_friction_is_told_at_five_per_cent():

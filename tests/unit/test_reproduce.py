@@ -184,10 +184,7 @@ def _ask(**question):
 HOSTILE = {
     "friction outside": (_study("ranking", friction="../../f.toml"), "names no file beside the study"),
     "a wrong study": (_study("cage", mass="-1 g"), "[cage] mass must be > 0"),
-    "a library that is none": (
-        lambda kept: kept["study"]["files"].update({"library 1: a": "x"}),
-        "not valid",
-    ),
+    "a library": (lambda kept: kept["study"]["files"].update({"library 1: a": "x"}), "not valid"),
     "no study": (lambda kept: kept.update(study=None), "does not keep its study"),
     "no origins": (lambda kept: kept["study"].pop("origins"), "is damaged"),
     "no files": (lambda kept: kept["study"].pop("files"), "is damaged"),

@@ -260,12 +260,7 @@ LOGS = [
     ("a cut in what is not there", {}, "20 m", "the log has time"),
     ("a cut in cycles that are not there", {}, "20 cycles", "needs a column of cycles"),
     ("a cut behind the end", {}, "1 h", "must lie before the end of the test, 6.665 min"),
-    (
-        "a cut at the end",
-        {"time": lambda time: np.arange(time.size)},
-        "3999 s",
-        "must lie before the end of the test",
-    ),
+    ("a cut at the end", {"time": lambda time: np.arange(time.size)}, "3999 s", "must lie before the end"),
     ("a cut that leaves little", {}, "399.7 s", "rows of steady friction"),
 ]
 

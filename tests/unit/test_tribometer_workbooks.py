@@ -134,10 +134,7 @@ SIZE, FLAGS = 24, 8
 LAUGHS = '<?xml version="1.0"?><!DOCTYPE sst [<!ENTITY a "ha"><!ENTITY b "&a;&a;&a;">]><sst>&b;</sst>'
 SHEET_1 = "xl/worksheets/sheet1.xml"
 WRONG = {
-    "a truth value": (
-        changed(4, 1, True),
-        'log.xlsx, sheet a: row 7, column "COF" must be a number; got "True"',
-    ),
+    "a truth value": (changed(4, 1, True), 'sheet a: row 7, column "COF" must be a number; got "True"'),
     "no names": ({"a": NUMBERS}, "has 2 open questions, the first: which column is the friction"),
     "no table": ({"a": HEAD}, "has no sheet with rows of numbers under a row of names"),
     "bomb": (zipped(PARTS | {"xl/media/a.bin": bytes(9_000_000)}), "must expand by at most 100:1"),

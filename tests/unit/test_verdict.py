@@ -98,12 +98,9 @@ def test_a_cage_is_judged_by_its_runs(found, rows, cage, evidence):
     assert result.reason.endswith(".")
 
 
+FED = {"pocket_power": 11.0, "land_power": -3.0}
 REASONS = [
-    (
-        "Hz in their judged part; friction feeds the cage 11 W.",
-        many(0, 16),
-        {"pocket_power": 11.0, "land_power": -3.0},
-    ),
+    ("Hz in their judged part; friction feeds the cage 11 W.", many(0, 16), FED),
     ("2 settle, 8 roll, 6 whirl; more may decide: raise [stability] runs.", many(2, 6, 0, 0, 8), {}),
     ("46 settle, 18 whirl; more runs would not change that, less friction would.", many(46, 18), {}),
     ("the cage then rubs on its land with 4 N at 3 m/s (1.2 W).", many(8), RUBS),
