@@ -130,9 +130,8 @@ def test_a_speed_and_a_pressure_never_tested_together_are_said():
     assert list(one.slopes) == ["pressure_velocity"]
     corner, edge = one.at(slip_speed=5.0, pressure=5e6), one.at(slip_speed=5.0, pressure=1e6)
     assert corner.mean == pytest.approx(0.1 * 5.0**0.2, rel=1e-9)  # of the tested 5 MPa m/s, not of 25
-    assert corner.extrapolation == (
-        "slip speed and pressure were not tested together: pV 25 MPa m/s is beyond 1 to 5 MPa m/s",
-    )
+    said = "slip speed and pressure were not tested together: pV 25 MPa m/s is beyond 1 to 5 MPa m/s"
+    assert corner.extrapolation == (said,)
     slope = one.slopes["pressure_velocity"]
     steep = sqrt(slope.value**2 + slope.standard_error**2)
     assert corner.widening == pytest.approx(corner.mean * steep * log(5.0), rel=1e-6)

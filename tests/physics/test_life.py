@@ -13,7 +13,7 @@ from separatrix import LifeTable, solve
 from separatrix.chain import slip_work
 from separatrix.chain.contacts import bearing_state
 from separatrix.chain.slip_work import TrackWork, track_work
-from separatrix.study.study import Film, KinematicModel, Race, WearRates
+from separatrix.study.study import KinematicModel, Race, WearRates
 from separatrix.verdict.critical_friction import PLACES, Count, steepness
 from separatrix.verdict.life_table import (
     FREELY,
@@ -399,9 +399,7 @@ def test_steepness_of_counts_is_their_slope():
 
 
 def test_a_study_without_wear_names_the_test():
-    """One line, and no table is computed; bare races have nothing to wear."""
+    """One line, and no table is computed; of bare races: test_page_verbs."""
     shipped = separatrix.read_study("cryogenic-turbopump")
-    with pytest.raises(separatrix.InputError, match="bare races"):
-        life(replace(shipped, wear=RATES, film=Film(race_friction=0.1)), revolutions=1e6, draws=64)
     with pytest.raises(separatrix.InputError, match=r"lacks the section \[wear\].*worn volume over load"):
         life(shipped, revolutions=1e6, draws=64)

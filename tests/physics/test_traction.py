@@ -323,10 +323,7 @@ def test_film_compliance_is_thickness_over_shear_modulus():
 
 def test_a_thick_film_in_series_is_noted():
     """Above 0.03 of the semi-minor axis; the number is returned."""
-    thick, thin = (
-        traction_curve(ELLIPSE, CREEP, film_thickness=share * ELLIPSE.semi_minor, **GOOD)
-        for share in (0.031, 0.029)
-    )
+    thick, thin = (traction_curve(ELLIPSE, CREEP, film_thickness=h * B, **GOOD) for h in (0.031, 0.029))
     (note,) = thick.notes
     assert re.search(r"^The film .* 0\.031 of the semi-minor axis\. Up to 0\.03 .* \"exact\"", note)
     assert thick.slope > 0.0

@@ -69,11 +69,8 @@ def test_python_calls_kernels_and_no_parts_of_them():
     for path, tree in trees.items():
         imports = [one for one in ast.walk(tree) if isinstance(one, ast.ImportFrom)]
         taken = [(kinds.get(one.module or "", {}).get(a.name), a.name) for one in imports for a in one.names]
-        parts = {
-            name
-            for how, name in (*taken, *((how, n) for n, how in kinds[names[path]].items()))
-            if how in PARTS
-        }
+        ways = (*taken, *((how, n) for n, how in kinds[names[path]].items()))
+        parts = {name for how, name in ways if how in PARTS}
         plain = [one for one in functions(tree) if one.name not in (*kinds[names[path]], "queue")]
         assert not {(one.name, called) for one in plain for called in calls(one) & parts}, path
 

@@ -28,16 +28,11 @@ def notes(study: Study) -> list[str]:
     return list(solve(study).bearing.notes)
 
 
+BORELESS = replace(SHIPPED.bearing, bore=None)
 STATIC = {
     "DN": (operated(inner_speed=41_888.0), "DN 20 million (bore in mm times speed in rpm) exceeds 3 million"),
-    "DN without a bore": (
-        replace(operated(inner_speed=8000.0), bearing=replace(SHIPPED.bearing, bore=None)),
-        "DN 4.97 million (pitch diameter in mm times speed in rpm)",
-    ),
-    "friction": (
-        replace(SHIPPED, film=replace(SHIPPED.film, race_friction=1.9)),
-        "race_friction 1.9 exceeds 1",
-    ),
+    "DN without a bore": (replace(operated(inner_speed=8000.0), bearing=BORELESS), "DN 4.97 million (pitch"),
+    "friction": (replace(SHIPPED, film=replace(SHIPPED.film, race_friction=1.9)), "friction 1.9 exceeds 1"),
     "heavy cage": (
         replace(SHIPPED, cage=replace(CAGE, mass=5.0)),
         "mass 5 kg does not fit the bearing: a polymer ring around these balls, 0.2 to 0.7 ball diameters "

@@ -267,9 +267,8 @@ def test_a_study_of_python_says_why_it_keeps_nothing():
 def test_an_answer_of_python_is_reproduced(put, capsys):
     """With the options of the call."""
     path = put({})
-    answer = separatrix.sweep(
-        "cryogenic-turbopump", cases=[{"film.thickness": 1e-6}, {"film.thickness": 5e-7}], jobs=1
-    )
+    cases = [{"film.thickness": h} for h in (1e-6, 5e-7)]
+    answer = separatrix.sweep("cryogenic-turbopump", cases=cases, jobs=1)
     Path(path).write_text(json.dumps(answer.document()))
     assert again(capsys, path)["agreement"] == "bit for bit"
 

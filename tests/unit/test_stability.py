@@ -72,16 +72,21 @@ def test_the_interval_shrinks_with_the_root_of_the_runs():
     assert width(64) / width(1024) == pytest.approx(4.0, rel=0.3)
 
 
+def known_responses(seed):
+    """Counts of a known probability, whatever the cage: binomial luck, the same for the same runs."""
+
+    def look(friction, first_run, runs):
+        numbers = np.random.default_rng((seed, round(1e9 * friction), first_run))
+        return Count(int(numbers.binomial(runs, logistic(0.12, 8.0)(friction))), runs)
+
+    return lambda _cage, settings, kicks, _runner: {kick: Response(look, settings.runs) for kick in kicks}
+
+
 def test_the_band_goes_from_a_tenth_that_grow_to_nine_tenths(monkeypatch):
     """Where algebra says: the mean of 16, each good to 6 %, lies within 4 %; a fifth would be 10 % off."""
     settings, found = StabilitySettings(kicks=(0.5,), runs=256), []
-
-    def look(friction, first_run, runs):  # binomial luck, the same for the same runs
-        numbers = np.random.default_rng((len(found), round(1e9 * friction), first_run))
-        return Count(int(numbers.binomial(runs, logistic(0.12, 8.0)(friction))), runs)
-
-    for _ in range(16):
-        monkeypatch.setattr(stability_curve, "responses", lambda *_: {0.5: Response(look, 256)})
+    for seed in range(16):
+        monkeypatch.setattr(stability_curve, "responses", known_responses(seed))
         found.append(critical_friction(CAGE, 0.5, settings))
     for end, at in (("_low", 0.12 / 9 ** (1 / 8)), ("", 0.12), ("_high", 0.12 * 9 ** (1 / 8))):
         mean = np.mean([getattr(point, f"critical_friction{end}") for point in found])
