@@ -5,7 +5,7 @@ from math import exp, log, pi, sqrt
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from separatrix import InputError, contact_ellipse, read_study
@@ -278,7 +278,6 @@ TESTS = st.lists(st.tuples(FRICTION, POSITIVE), min_size=1, max_size=8)
 @given(
     TEXT, TEXT, TEXT, FRICTION, POSITIVE, POSITIVE, POSITIVE, st.sampled_from(["time", "distance", "cycles"])
 )
-@settings(max_examples=60, deadline=None)
 def test_what_is_written_is_read(material, sample, flag, friction, v, p, end, axis):
     """Any printable words and any numbers come back as they were."""
     test = FrictionTest(
@@ -294,7 +293,6 @@ def test_what_is_written_is_read(material, sample, flag, friction, v, p, end, ax
 
 
 @given(TESTS, st.floats(0.2, 5.0), POSITIVE)
-@settings(max_examples=40, deadline=None)
 def test_friction_in_other_units_scales_the_answer_alone(tests, factor, speed):
     """All frictions times a factor: mean and errors take it on, relative scatter and words do not change."""
     frictions, speeds = zip(*tests, strict=True)
@@ -313,7 +311,6 @@ def test_friction_in_other_units_scales_the_answer_alone(tests, factor, speed):
 
 
 @given(TESTS, st.randoms(use_true_random=False))
-@settings(max_examples=40, deadline=None)
 def test_the_order_of_the_tests_does_not_matter(tests, random):
     """Shuffled tests: the same friction and scatter."""
     shuffled = list(tests)
@@ -326,7 +323,6 @@ def test_the_order_of_the_tests_does_not_matter(tests, random):
 
 
 @given(TESTS, st.floats(1.0, 1e4))
-@settings(max_examples=40, deadline=None)
 def test_farther_from_the_tests_the_scatter_only_grows(tests, factor):
     """Beyond the largest speed the mean stays and the deviation rises with the distance."""
     frictions, speeds = zip(*tests, strict=True)

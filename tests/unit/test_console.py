@@ -32,9 +32,8 @@ ROOT = Path(__file__).parents[2]
 
 def run(*arguments: str, **options) -> subprocess.CompletedProcess:
     """Run the command and return what it said."""
-    return subprocess.run(
-        [*COMMAND, *arguments], capture_output=True, timeout=PATIENCE, check=False, **{"text": True} | options
-    )
+    options = {"text": True, "timeout": PATIENCE} | options
+    return subprocess.run([*COMMAND, *arguments], capture_output=True, check=False, **options)
 
 
 def test_help_names_every_verb_in_the_order_of_the_chain():

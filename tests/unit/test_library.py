@@ -568,9 +568,8 @@ def test_wear_that_neither_study_nor_library_has_is_refused_with_the_test():
 def test_a_cage_of_the_library_brings_its_wear():
     """Unfilled PEEK, by the candidate or by the cage."""
     study = separatrix.read_study("momentum-wheel")
-    peek = replace(
-        study.ranking.candidates[0], name="PEEK", material=LIBRARY.material("cage material", "PEEK")
-    )
+    known = {"name": "PEEK", "material": LIBRARY.material("cage material", "PEEK")}
+    peek = replace(study.ranking.candidates[0], **known)
     rates = wear_rates(study, WearRates(bare_friction=0.3), peek)
     assert rates["wear.cage_wear"].value == pytest.approx(6.5e-14)
     assert rates["wear.cage_wear"].range is None

@@ -340,6 +340,7 @@ def mapped(**more):
 
 LAND = 'guidance = "outer"\nland_clearance = "1 mm"\nball_cage_stiffness = "3e6 N/m"\n'
 CRITICAL = "own_critical_friction"
+NO_EFFECT = Part({"effects": None, "candidate": None}, {})
 
 
 def candidate(verdict="STABLE", critical=(0.248, 0.231, 0.269), friction=0.28):
@@ -424,9 +425,7 @@ def test_the_headline_states_no_force_beyond_what_the_races_hold():
     forces = {"largest_contact_force": 3140.0, "force_limit": 593.0, "force_exceeds_races": True}
     values = candidate().values | forces | {"cage_motion": "ROLLING", "pocket_power": 37.1}
     units = {"force_limit": "N", "largest_contact_force": "N", "pocket_power": "W"}
-    (said,) = deciding(
-        Part({"effects": None, "candidate": None}, {}), [Part(values | {"land_clearance": None}, units)]
-    )
+    (said,) = deciding(NO_EFFECT, [Part(values | {"land_clearance": None}, units)])
     assert said.endswith("with pocket forces above 593 N, whose friction is all that the races hold.")
 
 
@@ -438,7 +437,7 @@ def test_the_headline_states_the_heat_of_cages_that_rub_on_their_land(others, wh
         Part(candidate().values | {"land_clearance": None, "cage_motion": motion, "rubbing_power": power}, W)
         for motion, power in motions
     ]
-    (said,) = deciding(Part({"effects": None, "candidate": None}, {}), rows)
+    (said,) = deciding(NO_EFFECT, rows)
     assert said == f"{whose} stays on its land and rubs it with 336 W to 367 W of heat."
 
 
@@ -460,7 +459,7 @@ def test_the_headline_names_who_has_another_verdict_with_the_inputs_drawn():
         Part(candidate().values | {"land_clearance": None, "uncertain_verdict": verdict}, {})
         for verdict in ("UNDECIDED", candidate().verdict, None)
     ]
-    (said,) = deciding(Part({"effects": None, "candidate": None}, {}), rows)
+    (said,) = deciding(NO_EFFECT, rows)
     assert said == "That is at the means of the uncertain inputs; with them drawn: UNDECIDED Phenolic."
 
 
@@ -472,7 +471,7 @@ def test_the_headline_explains_a_critical_friction_of_zero():
     assert f"Safety factor 0: {words}; their friction is 0.28" in said
     known = [candidate(), Part(row.values | {"name": "PEEK", "left_pocket": 9}, {})]
     words = words.replace("whirl", "whirl or bring a ball to the edge of its pocket")
-    assert f"PEEK: {words}." in [*deciding(Part({"effects": None, "candidate": None}, {}), known)]
+    assert f"PEEK: {words}." in [*deciding(NO_EFFECT, known)]
     wide = dict(zip((CRITICAL, f"{CRITICAL}_low", f"{CRITICAL}_high"), (0.254, 0.24, 0.272), strict=True))
     effects = [{"name": "wide_land", "change": "a land of 0.4 mm", **wide}]
     (land,) = deciding(Part({"effects": effects, "candidate": "Phenolic"}, {}), [row])

@@ -426,9 +426,7 @@ def test_a_real_job_tells_its_end_within_a_factor_of_two(path, monkeypatch):
     monkeypatch.setattr(console, "ENOUGH", 1.0)  # these jobs are short
     kinds = defaultdict[str, type](lambda: type("Kind", (str,), {}))
     events = json.loads(path.read_text())
-    begun, end = (
-        next(one[1] for one in way if one[0] in ("report", "pace")) for way in (events, events[::-1])
-    )
+    begun, *_, end = (one[1] for one in events if one[0] in ("report", "pace"))
     work, pace, shares, told = Work(), Pace(), [0.0], []
     for kind, *given_to in events:
         place = given_to[0]

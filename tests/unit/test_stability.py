@@ -275,9 +275,8 @@ def point(eta, f, spread=0.01, side=Side.ABOVE):
     """Critical friction at one restitution factor."""
     if f is None:
         return CriticalFriction(restitution_factor=eta, side=side)
-    return CriticalFriction(
-        restitution_factor=eta, critical_friction=f, scatter_low=f - spread, scatter_high=f + spread
-    )
+    ends = {"scatter_low": f - spread, "scatter_high": f + spread}
+    return CriticalFriction(restitution_factor=eta, critical_friction=f, **ends)
 
 
 POINTS = [point(0.0, 0.4), point(0.5, 0.2), point(1.0, 0.1)]

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import raw_logs
 from commands import column_map
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from raw_logs import as_written
 
@@ -46,7 +46,6 @@ ENCODINGS = ["utf-8", "utf-8-sig", "utf-16-le-mark", "utf-16-be-mark", "cp1252"]
     digits=st.integers(1, 12),
     friction=st.lists(st.floats(0.0, 3.0), min_size=3, max_size=12),
 )
-@settings(max_examples=60, deadline=None)
 def test_any_dialect_comes_back_or_is_asked_for(
     tmp_path_factory, separator, decimal, encoding, digits, friction
 ):
