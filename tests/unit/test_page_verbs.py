@@ -1,6 +1,7 @@
 """What is special in the pages of verbs: cases of sentences, data of figures, the bearing to scale."""
 
 import json
+import re
 
 import pytest
 from commands import extended, log, written
@@ -99,14 +100,15 @@ AT_REST = ("[cage]", '[cage]\nclearances = "at rest, 293 K"')
 WARM = ('temperature = "77 K"', 'temperature = "100 K"')
 BARE = (('material = "PTFE transfer film"', "# material"), ('thickness = "0.5 um"', "# thickness"))
 NO_DENSITY = r"toml, line \d+: \[operation\] fluid has no density near 100 K"
-CAGES = "stability map simulate rank sensitivity"
+CAGES = "restitution stability map simulate rank sensitivity"
+ALL = f"traction mobility {CAGES}"
 
 
 @pytest.mark.parametrize(
     ("shipped", "edits", "more", "verbs", "words"),
     [
-        ("momentum-wheel", (STEEP, TIGHT, FAST), "", CAGES, "out of their grooves"),
-        ("momentum-wheel", (SOFT, SPUTTERED), '\n[traction]\nmodel = "exact"\n', CAGES, "film strain"),
+        ("momentum-wheel", (STEEP, TIGHT, FAST), "", ALL, "out of their grooves"),
+        ("momentum-wheel", (SOFT, SPUTTERED), '\n[traction]\nmodel = "exact"\n', ALL, "film strain"),
         ("momentum-wheel", (HOT, AT_REST), "", CAGES, "needs its thermal expansion"),
         # liquid nitrogen is known at its boiling point, 77.4 K
         (SHIPPED, (WARM,), "\n[cooling]\nswirl = 0.4\n", "bearing simulate", NO_DENSITY),
@@ -118,6 +120,7 @@ def test_check_says_what_will_be_refused(tmp_path, shipped, edits, more, verbs, 
     """In the words of the verb itself, before anything is run."""
     study = changed(tmp_path, shipped, *edits, more=more)
     said = {(one.verb, one.sentence) for one in answer("check", study).refusals}
+    assert {verb for verb, sentence in said if re.search(words, sentence)} == {*verbs.split()}
     for verb in verbs.split():
         with pytest.raises(ValueError, match=words) as refused:
             computed(verb_named(verb), study)

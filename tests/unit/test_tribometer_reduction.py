@@ -127,9 +127,8 @@ TOLD = {  # a log, begin of a flag and words in it (None: no such flag), and wha
         log(replace(QUIET, correlation=0.03), knows_cycle=False),
         {"The steady part holds 12 independent values": "fewer than 20"},
     ),
-    "a mean of no contact": (
-        noisy(lambda t: -0.1 + 0.0 * t),
-        {"Friction is outside 0 to 2": "check zero, sign"},
+    "a mean that no contact has": (
+        *(noisy(lambda t: -0.1 + 0.0 * t), {"Friction is outside 0 to 2": "check zero, sign and units"}),
     ),
     "friction that never varies, without an error and without NaN": (
         *(log(friction=lambda t: np.full(t.size, 0.125)), {"Friction is 0.125 in every row": ""}),
