@@ -98,10 +98,8 @@ def test_the_land_warms_the_ring_that_has_it(study, state, guidance):
     """40 W at a land: half of it into the ring that guides the cage, none into the other."""
     study = replace(study, cage=replace(study.cage, guidance=guidance))
     calm, rubs = (heat_balance(study, state, land_power=power) for power in (0.0, 40.0))
-    inner, outer = (
-        getattr(rubs, name) - getattr(calm, name)
-        for name in ("inner_ring_temperature", "outer_ring_temperature")
-    )
+    rings = ("inner_ring_temperature", "outer_ring_temperature")
+    inner, outer = (getattr(rubs, name) - getattr(calm, name) for name in rings)
     assert (inner > outer + 0.5) == (guidance is Guidance.INNER)
     assert (outer > inner + 0.4) == (guidance is Guidance.OUTER)
 

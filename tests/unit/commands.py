@@ -76,15 +76,20 @@ def extended(folder: Path, text: str, base: str = "cryogenic-turbopump") -> Stud
     return read_study(written(folder, f'extends = "{base}"\n{text}', "case.toml"))
 
 
-def refusal(path: str | Path, read=read_study) -> str:
+def message_of(error: InputError) -> str:
     """Return the text of a refusal: a short printable line a mistake, the same from another process."""
-    with pytest.raises(InputError) as caught:
-        read(path)
-    error, message = caught.value, str(caught.value)
+    message = str(error)
     assert all(one.path and one.rule for one in error.problems or (error,)), message
     assert all(line.isprintable() and len(line) < 420 for line in message.split("\n")), message
     assert str(pickle.loads(pickle.dumps(error))) == message  # noqa: S301 - our own bytes
     return message
+
+
+def refusal(path: str | Path, read=read_study) -> str:
+    """Return the text with which a file is refused."""
+    with pytest.raises(InputError) as caught:
+        read(path)
+    return message_of(caught.value)
 
 
 def refusal_line(path: str | Path, read=read_study) -> str:

@@ -107,9 +107,8 @@ def test_an_interrupt_is_one_line_and_status_130(tmp_path):
     study = tmp_path / "long.toml"
     study.write_text('extends = "cryogenic-turbopump"\n[stability]\nruns = 5000\nduration = "1 s"\n')
     out = tmp_path / "out"
-    process = subprocess.Popen(
-        [*COMMAND, "stability", str(study), "--out", str(out)], stderr=subprocess.PIPE, text=True
-    )
+    call = [*COMMAND, "stability", str(study), "--out", str(out)]
+    process = subprocess.Popen(call, stderr=subprocess.PIPE, text=True)
     try:
         wait_until(out.exists)
         process.send_signal(signal.SIGINT)

@@ -560,9 +560,8 @@ def test_cases_that_are_alike_have_no_worst():
 def test_an_envelope_has_a_curve_for_each_value_of_the_other_inputs():
     """Over the first input where it rises along each curve; else over the numbers of the cases."""
     grid = swept(4)
-    for case, (thickness, friction) in zip(
-        grid.values["cases"], [(1, 2), (1, 3), (4, 2), (4, 3)], strict=True
-    ):
+    places = [(1, 2), (1, 3), (4, 2), (4, 3)]
+    for case, (thickness, friction) in zip(grid.values["cases"], places, strict=True):
         case |= {"film.thickness": 1e-6 * thickness, "film.race_friction": friction}
     grid.values["parameters"].append({"name": "film.race_friction", "unit": "-"})
     (panel,) = envelope_figure(grid).panels

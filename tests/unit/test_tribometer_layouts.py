@@ -27,18 +27,15 @@ def read(tmp_path, text, columns=None, name="log.txt"):
     return read_log(path, None if columns is None else column_map(columns))
 
 
-def test_te67_is_read_at_once_without_its_standstill_and_ramp(tmp_path):
-    """Phoenix TE67: clock times, decimal commas, no units, a standstill and a ramp of the speed, a footer.
-
-    Clock times are seconds, past midnight too; rows before the speed is reached do not count.
-    """
+def te67(rows=ROWS):
+    """Phoenix TE67: clock times, decimal commas, no units, a standstill and a ramp of the speed, a footer."""
     begin = datetime(2026, 4, 9, 23, 58)  # the test passes midnight
     names = "Time;This Step;Step Time;Test Time;Sliding Velocity;Load;Radius;Friction Force;"
     lines = ["Data file\t\tX.TSV", "", f"Test started at {begin:%H:%M:%S} on 2026-04-09"]
     lines.append("\t" + (names + "Friction Coefficient;Friction Force").replace(";", "\t") + "\t")
-    for i in range(ROWS):
+    for i in range(rows):
         speed = 0.15 * min(1.0, max(0.0, (i - 9) / 20.0))
-        friction = STEADY + NOISE[i] if speed else 0.01
+        friction = STEADY + NOISE[i % ROWS] if speed else 0.01
         row = (
             f"{begin + timedelta(seconds=i):%H:%M:%S};2;1800,;{i},;{speed:.3f};60,000;14;{60 * friction:.2f};"
         )
@@ -46,8 +43,12 @@ def test_te67_is_read_at_once_without_its_standstill_and_ramp(tmp_path):
             "\t" + (row + f"{friction:.5f};{60 * friction:.2f}").replace(".", ",").replace(";", "\t")
         )
         lines[-1] += "\t"
-    text = "\r\n".join([*lines, "Test completed at 00:30:00 on 2026-04-10", ""])
-    (log,) = read(tmp_path, text, name="log.tsv")
+    return "\r\n".join([*lines, "Test completed at 00:30:00 on 2026-04-10", ""])
+
+
+def test_te67_is_read_at_once_without_its_standstill_and_ramp(tmp_path):
+    """Clock times are seconds, past midnight too; rows before the speed is reached do not count."""
+    (log,) = read(tmp_path, te67(), name="log.tsv")
     assert log.time[-1] == ROWS - 1.0
     assert log.rows == ROWS - 27  # ten at rest, and seventeen until 90 % of the speed are reached
     assert any("27 of 240 rows are left out: standstill, reversals or ramps" in note for note in log.notes)
@@ -73,17 +74,19 @@ def test_pcs_mtm_is_read_at_once(tmp_path):
         read(tmp_path, head + "\n".join([*rows[:-1], rows[-1].rpartition("0.1")[0] + "0.9\t"]) + tail)
 
 
-def test_labview_text_is_read_at_once_and_a_copy_of_a_table_counts_once(tmp_path):
-    """LabVIEW measurement file: two segments of the same numbers, a name of comments without a column.
-
-    The first good row is a row; friction is |fx|/fz; six rows give a mean with a wide interval.
-    """
+def lvm(count=6):
+    """LabVIEW measurement file: two segments of the same numbers, a name of comments without a column."""
     head = "LabVIEW Measurement\t\nSeparator\tTab\nDate\t2017/09/20\nTime\t11:29:14.71\n"
     head += "***End_of_Header***\t\n\t\n"
     block = "Channels\t2\t\t\t\nSamples\t2000\t2000\t\t\nX0\t0.0E+0\t0.0E+0\t\t\nDelta_X\t0.1\t0.1\t\t\n"
     block += "***End_of_Header***\t\t\t\t\nX_Value\tfx_N\tfz_N\tComment\n"
-    block += "".join(f"{0.1 * i:.6f}\t{-0.2 - 0.01 * (i % 2):.6f}\t10.000000\n" for i in range(6))
-    (log,) = read(tmp_path, head + block + "\n" + block)
+    block += "".join(f"{0.1 * i:.6f}\t{-0.2 - 0.01 * (i % 2):.6f}\t10.000000\n" for i in range(count))
+    return head + block + "\n" + block
+
+
+def test_labview_text_is_read_at_once_and_a_copy_of_a_table_counts_once(tmp_path):
+    """The first good row is a row; friction is |fx|/fz; six rows give a mean with a wide interval."""
+    (log,) = read(tmp_path, lvm())
     assert log.format.startswith("LabVIEW text")
     assert log.rows == 6
     assert any("has the same numbers and is left out" in note for note in log.notes)
