@@ -55,14 +55,22 @@ class Made:
 
 def made(recipe: Recipe, rng: np.random.Generator, *, knows_cycle: bool = True) -> Made:
     """Return a log of a recipe."""
-    time = _times(recipe, rng)
+    steps = np.full(recipe.rows - 1, recipe.step)
+    if recipe.irregular:
+        steps *= rng.uniform(0.3, 1.7, steps.size)
+        steps[: steps.size // 3] *= 0.5
+    time = np.concatenate([[0.0], np.cumsum(steps)])
     length, x = time[-1], time / time[-1]
     cycle = recipe.rows_of_a_cycle * recipe.step
     friction = recipe.friction + recipe.drift * (x - 0.5) + noise(recipe, time, rng)
     if recipe.run_in:
         friction += recipe.excess * np.exp(-3.0 * x / recipe.run_in)
     friction += recipe.modulation * np.sin(2.0 * np.pi * (time / cycle + rng.random()))
-    kept = _kept(recipe, time.size, rng)
+    kept = rng.random(time.size) >= recipe.missing / 2.0
+    gap = int(recipe.missing / 2.0 * time.size)
+    start = int(rng.integers(1, max(2, time.size - gap - 1)))
+    kept[start : start + gap] = False
+    kept[[0, -1]] = True
     conditions = Conditions(
         material="PTFE", counterface="440C", medium="gaseous nitrogen", sample="S1", test="T1",
         temperature=77.0, slip_speed=SPEED, pressure=1e6, normal_force=10.0,
@@ -93,23 +101,6 @@ def remembered(white: np.ndarray, keep: np.ndarray) -> np.ndarray:
     return out
 
 
-def _times(recipe: Recipe, rng: np.random.Generator) -> np.ndarray:
-    steps = np.full(recipe.rows - 1, recipe.step)
-    if recipe.irregular:
-        steps *= rng.uniform(0.3, 1.7, steps.size)
-        steps[: steps.size // 3] *= 0.5
-    return np.concatenate([[0.0], np.cumsum(steps)])
-
-
-def _kept(recipe: Recipe, rows: int, rng: np.random.Generator) -> np.ndarray:
-    kept = rng.random(rows) >= recipe.missing / 2.0
-    gap = int(recipe.missing / 2.0 * rows)
-    start = int(rng.integers(1, max(2, rows - gap - 1)))
-    kept[start : start + gap] = False
-    kept[[0, -1]] = True
-    return kept
-
-
 CORRELATIONS = (0.0, 0.003, 0.01, 0.03)
 RUN_INS = (0.0, 0.05, 0.15, 0.3)
 DRIFTS = (0.0, 0.15)
@@ -122,21 +113,18 @@ def recipes(count: int, rng: np.random.Generator) -> list[Recipe]:
     made_from = [np.resize(np.arange(4), count) for _ in range(6)]
     for column in made_from:
         rng.shuffle(column)
-    kinds = zip(*(column.tolist() for column in made_from), strict=True)
-    return [_recipe(kind, rng) for kind in kinds]
-
-
-def _recipe(kind: tuple[int, ...], rng: np.random.Generator) -> Recipe:
-    correlation, run_in, drift, missing, rows, sampling = kind
-    friction = float(rng.uniform(0.05, 0.35))
-    base = Recipe(
-        rows=int(ROWS[rows] * rng.uniform(1.0, 1.3)) if ROWS[rows] < 20000 else 20000, friction=friction,
-        noise=friction * float(rng.choice([0.03, 0.1, 0.2])), correlation=CORRELATIONS[correlation],
-        run_in=RUN_INS[run_in] * float(rng.uniform(0.8, 1.0)),
-        excess=friction * float(rng.choice([-0.4, 0.3, 1.0, 2.0])),
-        drift=friction * DRIFTS[drift % 2] * float(rng.choice([-1.0, 1.0])),
-        modulation=friction * float(rng.choice([0.0, 0.1, 0.25])),
-        rows_of_a_cycle=float(rng.uniform(5.0, 14.0)), missing=MISSING[missing % 2],
-        irregular=bool(sampling % 2),
-    )  # fmt: skip
-    return replace(base, white=0.5 * base.noise if sampling > 1 else 0.0)
+    kinds, found = zip(*(column.tolist() for column in made_from), strict=True), []
+    for correlation, run_in, drift, missing, rows, sampling in kinds:
+        friction = float(rng.uniform(0.05, 0.35))
+        base = Recipe(
+            rows=int(ROWS[rows] * rng.uniform(1.0, 1.3)) if ROWS[rows] < 20000 else 20000, friction=friction,
+            noise=friction * float(rng.choice([0.03, 0.1, 0.2])), correlation=CORRELATIONS[correlation],
+            run_in=RUN_INS[run_in] * float(rng.uniform(0.8, 1.0)),
+            excess=friction * float(rng.choice([-0.4, 0.3, 1.0, 2.0])),
+            drift=friction * DRIFTS[drift % 2] * float(rng.choice([-1.0, 1.0])),
+            modulation=friction * float(rng.choice([0.0, 0.1, 0.25])),
+            rows_of_a_cycle=float(rng.uniform(5.0, 14.0)), missing=MISSING[missing % 2],
+            irregular=bool(sampling % 2),
+        )  # fmt: skip
+        found.append(replace(base, white=0.5 * base.noise if sampling > 1 else 0.0))
+    return found

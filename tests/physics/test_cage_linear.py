@@ -15,8 +15,6 @@ from separatrix.study.study import MotionModel, StabilitySettings
 
 M, K, Z, R = AT_REST.mass, AT_REST.ball_cage_stiffness, AT_REST.ball_count, AT_REST.pitch_radius
 LAW = BallTraction(mass=6.567e-3, slope=900.0, speed=math.inf)
-BACKWARD = {"inner_speed": 0.0, "outer_speed": 1500.0}
-"""Rotation of the outer ring, for whose friction whirl is backward."""
 
 
 @pytest.mark.parametrize(("damping", "friction"), [(2000.0, 0.08257), (4000.0, 0.04129), (8000.0, 0.02064)])
@@ -56,7 +54,7 @@ def test_critical_friction_of_balls_of_one_state_is_a_root_that_neither_grows_no
     assert light == pytest.approx(massless, rel=1e-8)  # mass changes k m_e/C^2, 3.7e-9
 
 
-@pytest.mark.parametrize("changes", [{}, BACKWARD], ids=["inner", "outer"])
+@pytest.mark.parametrize("changes", [{}, {"inner_speed": 0.0, "outer_speed": 1500.0}])
 def test_whirl_is_forward_for_inner_rotation_and_backward_for_outer(changes):
     """2891.2 Hz just above the limit, in the sense of the rotation or against it; 1e-4: digits, step."""
     cage = gripped(2000.0, 1.05 * 0.08257, **changes)

@@ -57,9 +57,9 @@ def test_a_thick_soft_film_lowers_the_restitution_factor():
     assert np.all((eta >= 0.0) & (eta < 1.0))
 
 
-def waves_at(cage, azimuth):
-    """Speed of a ball beyond the mean at these azimuths, from the harmonics of a cage."""
-    harmonics = enumerate(zip(cage.orbital_cosines, cage.orbital_sines, strict=True), 1)
+def waves_at(cosines, sines, azimuth):
+    """Sum of harmonics at these azimuths."""
+    harmonics = enumerate(zip(cosines, sines, strict=True), 1)
     return sum(a * np.cos(h * azimuth) + b * np.sin(h * azimuth) for h, (a, b) in harmonics)
 
 
@@ -80,7 +80,7 @@ def test_harmonics_reproduce_the_orbital_speeds_of_a_combined_load(study, change
     found = state.bearing.equilibrium
     cage = moving_cage(state, 0.0)
     beyond = cage.pitch_radius * (found.orbital_speed - cage.cage_speed)
-    left = waves_at(cage, found.azimuth) - beyond
+    left = waves_at(cage.orbital_cosines, cage.orbital_sines, found.azimuth) - beyond
     assert np.abs(beyond).max() > 0.01
     assert np.linalg.norm(left) < 1e-2 * np.linalg.norm(beyond)  # sqrt of the variance that is left
     share = 1.0 - np.linalg.norm(left) ** 2 / np.linalg.norm(beyond) ** 2
@@ -89,11 +89,12 @@ def test_harmonics_reproduce_the_orbital_speeds_of_a_combined_load(study, change
 
 def test_free_balls_lead_by_the_integral_of_their_speed():
     """Omega times the slope of the lead over the azimuth is the speed beyond the mean; to its difference."""
-    cage = replace(moving_cage(solve(STUDY), 0.0), orbital_cosines=(0.3, 0.1), orbital_sines=(-0.1, 0.2))
+    waves = (0.3, 0.1), (-0.1, 0.2)
+    cage = replace(moving_cage(solve(STUDY), 0.0), orbital_cosines=waves[0], orbital_sines=waves[1])
     azimuth, step = np.linspace(0.0, 6.0, 7), 1e-5
     slope = (cage.free_leads(azimuth + step) - cage.free_leads(azimuth - step)) / (2.0 * step)
     # rounding of a difference of 1e-5 rad: 1e-16 of the lead over the step
-    assert cage.cage_speed * slope == pytest.approx(waves_at(cage, azimuth), rel=1e-6, abs=1e-8)
+    assert cage.cage_speed * slope == pytest.approx(waves_at(*waves, azimuth), rel=1e-6, abs=1e-8)
 
 
 def test_the_ball_that_a_radial_load_presses_runs_slower():
@@ -149,23 +150,15 @@ def test_every_ball_is_held_by_its_own_loads(change):
     state = solve(study)
     found, cage = state.bearing.equilibrium, moving_cage(state, 0.0)
     loads = found.load_inner + found.load_outer
-    at = [waves_of(cage)[:, n : n + 2] for n in (2, 4)]
-    means = cage.capacity_waves[0], cage.slope_waves[0]
     capacity, slope = (
-        mean
-        + sum(
-            a * np.cos(h * found.azimuth) + b * np.sin(h * found.azimuth) for h, (a, b) in enumerate(one, 1)
-        )
-        for mean, one in zip(means, at, strict=True)
+        mean + waves_at(*waves_of(cage)[:, n : n + 2].T, found.azimuth)
+        for n, mean in ((2, cage.capacity_waves[0]), (4, cage.slope_waves[0]))
     )
     # harmonics leave 1e-4 of the variance
     np.testing.assert_allclose(capacity, loads / loads.max(), atol=5e-3)
     least = int(np.argmin(loads))
-    axial = replace(
-        SHIPPED.operation,
-        axial_load=13.0 * found.load_inner[least] * np.sin(found.contact_angle_inner[least]),
-    )
-    alone = solve(replace(SHIPPED, operation=axial)).mobility
+    load = 13.0 * found.load_inner[least] * np.sin(found.contact_angle_inner[least])
+    alone = solve(replace(SHIPPED, operation=replace(SHIPPED.operation, axial_load=load))).mobility
     # 6 and 8 % measured, from contact angles a degree apart
     assert slope[least] * state.mobility.traction.slope == pytest.approx(alone.traction.slope, rel=0.1)
     assert change != {"radial_load": 1000.0} or min(slope) < 0.45

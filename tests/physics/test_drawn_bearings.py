@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from cages import with_distributions
+from commands import extended, written
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.special import ndtr
@@ -88,13 +89,9 @@ def test_a_friction_from_tests_follows_the_pocket_of_its_draw(tmp_path):
         f'friction = {0.1 * (v / 20.0) ** 0.4 * scatter}\npressure = "60 MPa"\ntemperature = "77 K"\n'
         for v, scatter in zip((5.0, 12.0, 30.0, 60.0), (1.02, 0.97, 1.01, 1.0), strict=True)
     ]
-    (tmp_path / "friction.toml").write_text("\n".join(rows), encoding="utf-8")
-    (tmp_path / "study.toml").write_text(
-        'extends = "cryogenic-turbopump"\n[operation]\ninner_speed = "15000 rpm +- 20 %"\n'
-        '[ranking]\nfriction = "friction.toml"\n',
-        encoding="utf-8",
-    )
-    study = read_study(tmp_path / "study.toml")
+    written(tmp_path, "\n".join(rows), "friction.toml")
+    speed, friction = 'inner_speed = "15000 rpm +- 20 %"', 'friction = "friction.toml"'
+    study = extended(tmp_path, f"[operation]\n{speed}\n[ranking]\n{friction}\n")
     drawn = drawn_bearings(study, 8)
     draws = sample(study, 8, frictions=drawn.stated)
     column = draws.names.index(FRICTION)

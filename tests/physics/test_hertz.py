@@ -94,10 +94,7 @@ def test_race_curvatures_use_the_operating_angle() -> None:
     [
         ((-1.0, 200.0, 10.0, 1e11), "load must be finite and >= 0 [N]; got -1."),
         ((math.nan, 200.0, 10.0, 1e11), "load must be finite"),
-        (
-            (1.0, 200.0, 0.0, 1e11),
-            "curvature_transverse must be finite and > 0 [1/m]; got 0. The groove radius",
-        ),
+        ((1.0, 200.0, 0.0, 1e11), "curvature_transverse must be finite and > 0 [1/m]; got 0. The groove"),
         ((1.0, 10.0, 200.0, 1e11), "Swap the two"),
         ((1.0, math.inf, 200.0, 1e11), "curvature_rolling must lie from 200 up [1/m]; got inf."),
         ((1.0, 200.0, 10.0, 0.0), "contact_modulus must be finite and > 0 [Pa]; got 0."),
@@ -123,9 +120,8 @@ def test_axes_give_back_the_curvatures(curvatures):
     found = ellipse_of_curvatures(200.0, *curvatures, 1.1e11)
     again = ellipse_of_axes(200.0, found.semi_minor, found.semi_major, 1.1e11)
     assert (again.curvature_rolling, again.curvature_transverse) == pytest.approx(curvatures, rel=1e-9)
-    assert (again.max_pressure, again.approach) == pytest.approx(
-        (found.max_pressure, found.approach), rel=1e-9
-    )
+    for name in ("max_pressure", "approach"):
+        assert getattr(again, name) == pytest.approx(getattr(found, name), rel=1e-9)
     assert (found.semi_minor < found.semi_major) == (curvatures[0] > curvatures[1])
 
 

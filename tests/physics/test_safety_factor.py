@@ -195,11 +195,7 @@ def test_work_among_free_balls_is_foreseen_where_they_are_asked(highest, ball, s
     [
         ({"model": CageModel.PAPER}, BallModel.DAMPER, MotionModel.PLANE),
         (FULL, BallModel.AUTO, MotionModel.PLANE),
-        (
-            {"model": CageModel.FULL, "pocket_shape": PocketShape.CYLINDRICAL},
-            BallModel.AUTO,
-            MotionModel.SPACE,
-        ),
+        (FULL | {"pocket_shape": PocketShape.CYLINDRICAL}, BallModel.AUTO, MotionModel.SPACE),
         (FULL | {"ball": BallModel.FREE}, BallModel.FREE, MotionModel.PLANE),
         ({"ball": BallModel.TRACTION}, BallModel.TRACTION, MotionModel.PLANE),
     ],

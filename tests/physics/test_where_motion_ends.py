@@ -38,12 +38,6 @@ def wheel(friction: float) -> MovingCage:
     return replace(shipped("momentum-wheel", friction=friction), ball_cage_stiffness=1.9e6)
 
 
-@lru_cache
-def wheel_runs(friction: float) -> Ensemble:
-    """Runs of the momentum wheel from every kick of `KICKS`."""
-    return ends(wheel(friction), KICKS)
-
-
 def ends(cage: MovingCage, kicks: tuple[float, ...]) -> Ensemble:
     """A few runs from each kick."""
     return run_ensemble(cage, StabilitySettings(kicks=kicks, runs=RUNS, duration=DURATION))
@@ -51,7 +45,7 @@ def ends(cage: MovingCage, kicks: tuple[float, ...]) -> Ensemble:
 
 def test_a_whirl_is_one_from_a_weak_kick_and_from_a_strong_one():
     """Dry phenolic, f 0.30: from 0.5 and from 4 m/s alike; the friction of the pockets feeds it."""
-    runs = wheel_runs(0.30)
+    runs = ends(wheel(0.30), KICKS)
     for kick in (0.5, 4.0):
         at = KICKS.index(kick)
         assert np.count_nonzero(runs.outcome[at] == RunOutcome.WHIRLS) >= RUNS - 1

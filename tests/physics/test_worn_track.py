@@ -70,12 +70,9 @@ def test_a_profile_of_equal_values_is_a_number(places, friction, compliance, spi
 def test_full_sliding_takes_the_mean_friction_under_the_load():
     """Saturated: the integral of mu p over N, whose density is (3/4)(1 - y^2/a^2); 1e-6: Gauss panels."""
     friction, compliance = band(INNER, 0.3)
-    how = {
-        "race_friction": friction,
-        "film_compliance": compliance,
-        "creep_increments": np.array([-1.0, 1.0]),
-    }
-    curve = traction_curve(INNER[0], Creep(spin=0.0, curvature=0.0), **how)
+    how = {"race_friction": friction, "film_compliance": compliance}
+    ends = np.array([-1.0, 1.0])
+    curve = traction_curve(INNER[0], Creep(spin=0.0, curvature=0.0), creep_increments=ends, **how)
     inside = 0.75 * 2.0 * (0.3 - 0.3**3 / 3.0)
     expected = 0.3 * inside + 0.1 * (1.0 - inside)
     assert curve.traction_coefficient == pytest.approx([-expected, expected], rel=1e-6)
@@ -123,9 +120,7 @@ def test_a_worn_film_is_one_that_there_is():
     wear = Wear(friction=0.3, share=0.1, thickness=2e-6)
     with pytest.raises(InputError, match=r"Film.wear needs a film that wears"):
         Film(race_friction=0.1, wear=wear)
-    with pytest.raises(
-        InputError, match=r"Film.wear.thickness must be at most the thickness of the film, 1 um"
-    ):
+    with pytest.raises(InputError, match=r"Film.wear.thickness must be at most the thickness .*, 1 um"):
         Film(race_friction=0.1, material=SOFT, thickness=1e-6, wear=wear)
     none = worn_band(1e-4, worn=0.0, film=0.1)
     with pytest.raises(InputError, match=r"race_friction must be > 0 everywhere"):

@@ -29,8 +29,8 @@ def _of_row(row: Document, cage: Document) -> Iterator[str]:
             yield f"{name} {value} outside {low} to {high}"
     if abs(row["margin"] - (row["restitution_threshold"] - row["restitution_factor"])) > 1e-12:
         yield f"margin {row['margin']} is not the threshold less eta"
-    counts = row["by_kick"]
-    if any(_ends(count) != row["runs"] for count in counts):
+    counts, ends = row["by_kick"], ("settles", "rolls", "whirls", "drifts", "unresolved")
+    if any(sum(count[end] for end in ends) != row["runs"] for count in counts):
         yield f"runs do not add up to {row['runs']}: {counts}"
     if row["energy_imbalance"] > MOST_OPEN:
         yield f"the ledger leaves {row['energy_imbalance']} open"
@@ -64,7 +64,3 @@ def _of_verdict(row: Document, cage: Document) -> Iterator[str]:
         yield f"STABLE and {row['cage_motion']}"
     if row["cage_motion"] == "ON THE LAND" and row["rubbing_force"] <= 0.0:
         yield "on the land without a force there"
-
-
-def _ends(count: Document) -> int:
-    return int(sum(count[end] for end in ("settles", "rolls", "whirls", "drifts", "unresolved")))

@@ -24,7 +24,7 @@ LONG = SMALL.replace('duration = "4 ms"', 'duration = "400 ms"').replace("runs =
 PATIENCE = 1200.0
 """Time for a job, kernels compiled first [s]."""
 
-AXES = {"x": "restitution_factor=0.3..0.9:2", "y": "film.thickness=0.4..0.8um:2"}
+AXES = {"x": "restitution_factor=0.3..0.9:2", "y": "film.thickness=0.4..0.8um:2", "runs": "1"}
 LOG = "time [s],friction\n" + "".join(f"{i / 10},{0.2 + 0.01 * (i % 7)}\n" for i in range(400))
 
 
@@ -43,9 +43,8 @@ def page(root):
     with pytest.MonkeyPatch.context() as patch, TestClient(application(root)) as client:
         patch.setattr("separatrix.front.page.worker.work", work_undrawn)
         for verb in ("bearing", "rank", "map"):
-            client.post(
-                "/run/small.toml", data={"verb": verb, **(AXES | {"runs": "1"} if verb == "map" else {})}
-            )
+            asked = AXES if verb == "map" else {}
+            client.post("/run/small.toml", data={"verb": verb, **asked})
         until(client, lambda jobs: all(job.startswith("finished") for job in jobs))
         yield client
 

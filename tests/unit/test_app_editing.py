@@ -235,11 +235,8 @@ def test_a_wrong_address_is_answered_with_a_page(page, asked, status):
 # A link out of the page's folder is answered like a missing file; nothing is written through it.
 
 NEIGHBOUR = "the study of a neighbour"
-ANSWER = {
-    "title": NEIGHBOUR,
-    "warnings": [],
-    "overall": [{"rank": 1, "name": NEIGHBOUR, "verdict": "STABLE"}],
-}
+ROW = {"rank": 1, "name": NEIGHBOUR, "verdict": "STABLE"}
+ANSWER = {"title": NEIGHBOUR, "warnings": [], "overall": [ROW]}
 
 
 @pytest.fixture

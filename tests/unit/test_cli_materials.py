@@ -22,10 +22,8 @@ STUDY = 'title = "Ours"\nextends = "cryogenic-turbopump"\n[film]\nmaterial = "Ou
 DATUM = {"value", "unit", "range", "temperature", "pressure", "medium", "form", "source", "confidence"}
 RECORD = {"kind", "name", "remark", "composition", "aliases", "library", "data"}
 FLUID = RECORD | {"substance", "phase", "coolprop"}
-TABLE = {
-    *("kind", "name", "title", "remark", "source", "confidence", "conditions", "environments", "library"),
-    "friction",
-}
+TABLE = (RECORD - {"composition", "aliases", "data"}) | {"title", "source", "confidence", "friction"}
+TABLE |= {"conditions", "environments"}
 
 
 @pytest.fixture

@@ -32,9 +32,8 @@ ROOT = Path(__file__).parents[2]
 
 def run(*arguments: str, **options) -> subprocess.CompletedProcess:
     """Run the command and return what it said."""
-    return subprocess.run(
-        [*COMMAND, *arguments], capture_output=True, timeout=PATIENCE, check=False, **{"text": True} | options
-    )
+    options = {"text": True, "timeout": PATIENCE} | options
+    return subprocess.run([*COMMAND, *arguments], capture_output=True, check=False, **options)
 
 
 def test_help_names_every_verb_in_the_order_of_the_chain():
@@ -108,9 +107,8 @@ def test_an_interrupt_is_one_line_and_status_130(tmp_path):
     study = tmp_path / "long.toml"
     study.write_text('extends = "cryogenic-turbopump"\n[stability]\nruns = 5000\nduration = "1 s"\n')
     out = tmp_path / "out"
-    process = subprocess.Popen(
-        [*COMMAND, "stability", str(study), "--out", str(out)], stderr=subprocess.PIPE, text=True
-    )
+    call = [*COMMAND, "stability", str(study), "--out", str(out)]
+    process = subprocess.Popen(call, stderr=subprocess.PIPE, text=True)
     try:
         wait_until(out.exists)
         process.send_signal(signal.SIGINT)
@@ -224,12 +222,8 @@ def wait() -> None:
         time.sleep(0.01)
 
 
-def never_ends() -> None:
-    """Be a kernel that hears nothing, as far as a test can wait."""
-    HELD.wait()
-
-
 HELD = threading.Event()
+"""Its wait is a kernel that hears nothing, as far as a test can wait."""
 
 
 @pytest.fixture
@@ -262,7 +256,7 @@ def test_work_that_hears_no_interrupt_is_left_behind(monkeypatch):
     monkeypatch.setattr(console, "PATIENCE", 0.1)
     before = threading.enumerate()
     with pytest.raises(console.LeftBehind):
-        console.breakable(never_ends)
+        console.breakable(HELD.wait)
     (left,) = (one for one in threading.enumerate() if one not in before)
     HELD.set()
     left.join(60.0)

@@ -5,7 +5,7 @@ import io
 import json
 import os
 import signal
-from dataclasses import dataclass, fields
+from dataclasses import fields, make_dataclass
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -84,13 +84,8 @@ def test_a_separation_by_one_input_stays_finite():
     assert abs(b[2]) < 2.0
 
 
-@dataclass(frozen=True)
-class Judged:
-    """What counting reads of a judgement."""
-
-    verdict: Verdict
-    by_kick: tuple[KickCount, ...]
-    worst_kick: float
+Judged = make_dataclass("Judged", ("verdict", "by_kick", "worst_kick"))
+"""What counting reads of a judgement."""
 
 
 def judged(verdict, *settles, runs=64):

@@ -30,7 +30,10 @@ def test_files_and_most_functions_are_short_and_floating_point_is_strict():
         text = path.read_text(encoding="utf-8")
         assert not re.search(r"fastmath\s*=\s*True|parallel\s*=\s*True", text), path
         assert len(text.splitlines()) < LIMIT, path
-        sizes += _sizes(ast.parse(text))
+        for node in ast.walk(ast.parse(text)):
+            if isinstance(node, ast.FunctionDef):
+                body = node.body[1:] if ast.get_docstring(node) else node.body
+                sizes.append(node.end_lineno - body[0].lineno + 1 if body else 0)
     assert sorted(sizes)[int(0.95 * len(sizes))] < 40
 
 
@@ -41,15 +44,6 @@ def test_nothing_names_a_machine_or_an_index():
     for path in (*TEXTS, *root):
         text = path.read_text(encoding="utf-8", errors="replace")
         assert not re.search(r"/(home|root|work|Users|tmp)/\w|index-url|https?://\S*/simple", text), path
-
-
-def _sizes(tree: ast.AST) -> list[int]:
-    sizes = []
-    for node in ast.walk(tree):
-        if isinstance(node, ast.FunctionDef):
-            body = node.body[1:] if ast.get_docstring(node) else node.body
-            sizes.append(node.end_lineno - body[0].lineno + 1 if body else 0)
-    return sizes
 
 
 def compiled(tree: ast.Module) -> dict[str, str]:
@@ -75,11 +69,8 @@ def test_python_calls_kernels_and_no_parts_of_them():
     for path, tree in trees.items():
         imports = [one for one in ast.walk(tree) if isinstance(one, ast.ImportFrom)]
         taken = [(kinds.get(one.module or "", {}).get(a.name), a.name) for one in imports for a in one.names]
-        parts = {
-            name
-            for how, name in (*taken, *((how, n) for n, how in kinds[names[path]].items()))
-            if how in PARTS
-        }
+        ways = (*taken, *((how, n) for n, how in kinds[names[path]].items()))
+        parts = {name for how, name in ways if how in PARTS}
         plain = [one for one in functions(tree) if one.name not in (*kinds[names[path]], "queue")]
         assert not {(one.name, called) for one in plain for called in calls(one) & parts}, path
 

@@ -26,25 +26,16 @@ DATA = files("separatrix.study.library") / "data"
 LIBRARY = Library()
 SOLIDS = ("bearing material", "cage material", "film")
 
-PAPER_TABLE_1 = """
-Meldin HTC 100 | polyimide + carbon fibers
-Meldin 7211 | polyimide + graphite + PTFE
-Armalon | PTFE + glass fibers
-PEEK WG 101 | polyether ether ketone + additives, PTFE free
-PEEK 450 GL 30 | polyether ether ketone + glass fibers
-PEEK 450 CA 30 | polyether ether ketone + glass fibers + PTFE
-Vespel SP 211 | polyimide + graphite + PTFE
+PAPER = """
+Meldin HTC 100 | polyimide + carbon fibers | - | - | .22 | .32
+Meldin 7211 | polyimide + graphite + PTFE | .10 | .13 | .18 | .20
+Armalon | PTFE + glass fibers | .09 | .07 | .05 | .08
+PEEK WG 101 | polyether ether ketone + additives, PTFE free | .10 | .17 | .15 | .14
+PEEK 450 GL 30 | polyether ether ketone + glass fibers | .29 | .16 | .39 | .27
+PEEK 450 CA 30 | polyether ether ketone + glass fibers + PTFE | .11 | .17 | .12 | .13
+Vespel SP 211 | polyimide + graphite + PTFE | .12 | .13 | .14 | .11
 """
-
-PAPER_TABLE_3 = """
-Meldin HTC 100 | - | - | .22 | .32
-Meldin 7211 | .10 | .13 | .18 | .20
-Armalon | .09 | .07 | .05 | .08
-PEEK WG 101 | .10 | .17 | .15 | .14
-PEEK 450 GL 30 | .29 | .16 | .39 | .27
-PEEK 450 CA 30 | .11 | .17 | .12 | .13
-Vespel SP 211 | .12 | .13 | .14 | .11
-"""
+"""Of each material its composition, table 1, and its frictions, table 3."""
 
 OURS = """\
 title = "Our lab"
@@ -109,8 +100,8 @@ def test_every_number_of_a_solid_has_a_temperature():
 
 def test_the_cage_materials_are_those_of_the_paper_and_their_moduli_are_guesses():
     """Table 1, every line; no maker's sheet of the seven was at hand, so no modulus claims more."""
-    for line in PAPER_TABLE_1.strip().splitlines():
-        name, composition = line.split(" | ")
+    for line in PAPER.strip().splitlines():
+        name, composition, *_ = line.split(" | ")
         assert LIBRARY.records("cage material")[name].content.composition == f"{composition} (paper, table 1)"
         confidence = LIBRARY.material("cage material", name).confidence
         assert confidence == "modulus: guess, Poisson's ratio: guess"
@@ -120,9 +111,9 @@ def test_the_cage_materials_are_those_of_the_paper_and_their_moduli_are_guesses(
 def test_the_friction_table_is_the_paper_s():
     """Table 3, every number; a cross is absent, never 0. Its file names its author and what is missing."""
     table = LIBRARY.record("friction table", "pin-on-disk-77K").content
-    rows = [line.split(" | ") for line in PAPER_TABLE_3.strip().splitlines()]
+    rows = [line.split(" | ") for line in PAPER.strip().splitlines()]
     assert list(table.friction) == [row[0] for row in rows]
-    for name, *values in rows:
+    for name, _, *values in rows:
         for environment, value in zip(table.columns, values, strict=True):
             friction = table.rows[name][environment]
             assert (friction is None) == (value == "-")
@@ -577,9 +568,8 @@ def test_wear_that_neither_study_nor_library_has_is_refused_with_the_test():
 def test_a_cage_of_the_library_brings_its_wear():
     """Unfilled PEEK, by the candidate or by the cage."""
     study = separatrix.read_study("momentum-wheel")
-    peek = replace(
-        study.ranking.candidates[0], name="PEEK", material=LIBRARY.material("cage material", "PEEK")
-    )
+    known = {"name": "PEEK", "material": LIBRARY.material("cage material", "PEEK")}
+    peek = replace(study.ranking.candidates[0], **known)
     rates = wear_rates(study, WearRates(bare_friction=0.3), peek)
     assert rates["wear.cage_wear"].value == pytest.approx(6.5e-14)
     assert rates["wear.cage_wear"].range is None

@@ -330,9 +330,8 @@ def test_every_medium_shows_every_page(verb, answers):
             spec = one.figure()
             assert save(spec).svg.startswith("<svg")
             assert one.caption
-            assert all(
-                "[" in axis.label or axis.names for panel in spec.panels for axis in (panel.x, panel.y)
-            )
+            axes = [axis for panel in spec.panels for axis in (panel.x, panel.y)]
+            assert all("[" in axis.label or axis.names for axis in axes)
 
 
 @pytest.mark.parametrize("verb", [verb for verb in VERBS if verb_named(verb).keeps_runs])

@@ -31,6 +31,7 @@ from separatrix.verdict.ranking_records import (
 )
 from separatrix.verdict.reasons import CageMotion
 
+IN_AIR = {"air": Friction(mean=0.3)}
 QUICK = StabilitySettings(kicks=(0.5,), runs=8, duration=0.004, restitution_factors=(0.3, 0.6), seed=1)
 
 
@@ -117,11 +118,8 @@ def test_where_eta_differs_the_margin_ranks():
     rows = [ranked(name, stiffness, eta, t, 0.02) for name, stiffness, eta, t in given]
     known = {row.name: MeanFriction(0.1, 0.01) for row in rows}
     margins = [margin_interval(row) for row in rows]
-    assert ranks(margins, lambda i, leader: same_rank(rows[i], rows[leader], known, margin_interval)) == [
-        3,
-        1,
-        2,
-    ]
+    found = ranks(margins, lambda i, leader: same_rank(rows[i], rows[leader], known, margin_interval))
+    assert found == [3, 1, 2]
 
 
 def test_who_may_have_the_lower_friction_is_told_at_five_per_cent():
@@ -225,10 +223,8 @@ def test_each_candidate_has_the_stiffness_of_its_own_pocket():
     """Without a given stiffness a stiffer material has a stiffer pocket and gets back less speed."""
     study = quick_study()
     soft = Material(name="soft", elastic_modulus=2e9, poisson_ratio=0.4)
-    candidates = tuple(
-        Candidate(name=m.name, friction={"air": Friction(mean=0.3)}, material=m)
-        for m in (soft, replace(soft, name="stiff", elastic_modulus=4e9))
-    )
+    walls = soft, replace(soft, name="stiff", elastic_modulus=4e9)
+    candidates = tuple(Candidate(name=m.name, friction=IN_AIR, material=m) for m in walls)
     cage = replace(study.cage, ball_cage_stiffness=None, material=None)
     question = RankingQuestion(environments=("air",), candidates=candidates)
     found = rank(replace(study, cage=cage, ranking=question)).overall
@@ -246,9 +242,7 @@ def test_a_cage_by_its_shape_has_the_mass_of_each_candidate():
     study = quick_study()
     wall = Material(name="light", elastic_modulus=3e9, poisson_ratio=0.4, density=1300.0)
     walls = (wall, replace(wall, name="heavy", density=8800.0), replace(wall, name="unknown", density=None))
-    candidates = tuple(
-        Candidate(name=m.name, friction={"air": Friction(mean=0.3)}, material=m) for m in walls
-    )
+    candidates = tuple(Candidate(name=m.name, friction=IN_AIR, material=m) for m in walls)
     ring = {"inner_diameter": 61e-3, "outer_diameter": 69e-3, "width": 15e-3}
     cage = replace(study.cage, mass=None, material=wall, land_diameter=None, **ring)
     question = RankingQuestion(environments=("air",), candidates=candidates)
@@ -273,6 +267,6 @@ def test_a_row_whose_evidence_is_not_finite_has_a_reason_and_no_verdict(bad):
     row = _row(question, found, "A", "air", MeanFriction(0.1, 0.01))
     assert isinstance(row, NotFinished)
     assert row.judgement is None
-    assert row.reason == (
-        f"no verdict: largest contact force is {float(bad)}. The inputs are far from those of a bearing"
+    assert row.reason.startswith(
+        f"no verdict: largest contact force is {float(bad)}. The inputs are far from"
     )

@@ -130,9 +130,8 @@ def test_a_document_leaves_out_a_number_that_is_not_finite_with_a_warning(bad):
     assert (found["inner"]["load"], found["values"]) == (None, [[None, 1.0]])
     note, reason = found["warnings"]
     assert note == "A note."
-    assert reason.startswith(
-        f"A number is not finite and is left out: bearing.inner.load is {bad} and 1 more."
-    )
+    words = f"A number is not finite and is left out: bearing.inner.load is {bad} and 1 more."
+    assert reason.startswith(words)
     json.dumps(found, allow_nan=False)
     np.testing.assert_array_equal(to_xarray(record)["values"], [[np.nan, 1.0]])
 

@@ -178,10 +178,8 @@ def test_bearings_of_their_own_are_run_as_each_by_itself():
     """Three cages, one of which turns backward, each with its number of a run: their columns, in order."""
     back = replace(CAGE, cage_speed=-CAGE.cage_speed, inner_speed=-CAGE.inner_speed)
     asked = [Runs(cage, QUICK, 7 + i, 1) for i, cage in enumerate((CAGE, back, replace(CAGE, mass=0.004)))]
-    whole = Runner().ensemble_of(asked, (0.1, 0.5))
-    parts = [
-        run_ensemble(one.cage, QUICK, kicks=(0.1, 0.5), runs=1, first_run=one.first_run) for one in asked
-    ]
+    whole, how = Runner().ensemble_of(asked, (0.1, 0.5)), {"kicks": (0.1, 0.5), "runs": 1}
+    parts = [run_ensemble(one.cage, QUICK, first_run=one.first_run, **how) for one in asked]
     same_bits(whole, jobs.joined(parts))
 
 
@@ -426,9 +424,7 @@ def test_a_real_job_tells_its_end_within_a_factor_of_two(path, monkeypatch):
     monkeypatch.setattr(console, "ENOUGH", 1.0)  # these jobs are short
     kinds = defaultdict[str, type](lambda: type("Kind", (str,), {}))
     events = json.loads(path.read_text())
-    begun, end = (
-        next(one[1] for one in way if one[0] in ("report", "pace")) for way in (events, events[::-1])
-    )
+    begun, *_, end = (one[1] for one in events if one[0] in ("report", "pace"))
     work, pace, shares, told = Work(), Pace(), [0.0], []
     for kind, *given_to in events:
         place = given_to[0]

@@ -222,16 +222,12 @@ def test_unresolved_runs_are_told(monkeypatch):
     assert re.search(r"2 of 5 runs from 0.5 m/s at friction 0.1 .* not whirling", note)
 
 
-def eta_of(cage, damping):
-    """Nominal restitution factor of a race damping."""
-    return restitution_factor(damping_ratio(cage.ball_cage_stiffness, cage.mass, damping))
-
-
 @pytest.mark.parametrize("ball", [BallModel.TRACTION, BallModel.FREE])
 def test_races_that_hold_twice_as_hard_give_the_same_traction_at_half_the_slip(ball):
     """Capacity and mass stay; at eta = 1 the balls are gripped."""
     cage = moving_cage(SHIPPED, 0.1, ball)
-    hard = cage_at(cage, eta_of(cage, 2.0 * cage.race_damping), 0.1)
+    zeta = damping_ratio(cage.ball_cage_stiffness, cage.mass, 2.0 * cage.race_damping)
+    hard = cage_at(cage, restitution_factor(zeta), 0.1)
     assert hard.traction.capacity == pytest.approx(cage.traction.capacity, rel=1e-12)  # rounding
     # of eta and back
     assert hard.traction.slope == pytest.approx(2.0 * cage.traction.slope, rel=1e-9)
@@ -279,9 +275,8 @@ def point(eta, f, spread=0.01, side=Side.ABOVE):
     """Critical friction at one restitution factor."""
     if f is None:
         return CriticalFriction(restitution_factor=eta, side=side)
-    return CriticalFriction(
-        restitution_factor=eta, critical_friction=f, scatter_low=f - spread, scatter_high=f + spread
-    )
+    ends = {"scatter_low": f - spread, "scatter_high": f + spread}
+    return CriticalFriction(restitution_factor=eta, critical_friction=f, **ends)
 
 
 POINTS = [point(0.0, 0.4), point(0.5, 0.2), point(1.0, 0.1)]

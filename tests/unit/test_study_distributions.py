@@ -48,9 +48,8 @@ def test_every_form_is_read(text, study_of):
     found, wanted = study.distributions["film.thickness"], FORMS[text]
     # What follows the sign is two standard deviations, as on a certificate (GUM, 7.2.4).
     assert found.kind == wanted.kind
-    assert (found.mean, found.standard_deviation) == pytest.approx(
-        (wanted.mean, wanted.standard_deviation), rel=1e-14
-    )
+    moments = wanted.mean, wanted.standard_deviation
+    assert (found.mean, found.standard_deviation) == pytest.approx(moments, rel=1e-14)
     assert found.text == text
     assert study.film.thickness == found.mean
 
@@ -192,11 +191,6 @@ friction = { "B.C" = 0.1 }
 """)
 
 
-MANY = "\n".join(
-    f'[[ranking.candidates]]\nname = "{i}"\nfriction = {{ "air" = "0.1 +- 10 %" }}' for i in range(51)
-)
-
-
 def film(text: str) -> str:
     """Return a film of this thickness."""
     return f"[film]\nthickness = {text}\n"
@@ -207,6 +201,7 @@ def friction(text: str) -> str:
     return f'[[ranking.candidates]]\nname = "One"\nfriction = {{ "air" = {text} }}\n'
 
 
+MANY = "".join(friction('"0.1 +- 10 %"').replace("One", str(i)) for i in range(51))
 SECOND = """\
 [[ranking.candidates]]
 name = "One.air"

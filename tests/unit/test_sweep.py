@@ -126,10 +126,7 @@ WRONG = {
     "no case": ("cage.mass\n", "needs a row of parameters and below it a row for each case"),
     "a name": ("cage.mas\n1 g\n", "row 1 names no parameter of a study"),
     "twice": ("cage.mass,cage.mass\n1 g,2 g\n", "row 1 must name each parameter once; got cage.mass"),
-    "twice, short": (
-        "cage.ball_cage_friction,ball_cage_friction\n.1,.2\n",
-        "row 1 must name each parameter once",
-    ),
+    "twice, short": ("cage.ball_cage_friction,ball_cage_friction\n.1,.2\n", "row 1 must name each"),
     "time twice": ("cage.mass,time_share,time_share\n1 g,1,2\n", "must name each parameter once"),
 }
 

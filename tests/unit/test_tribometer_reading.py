@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import raw_logs
 from commands import column_map
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from raw_logs import as_written
 
@@ -46,7 +46,6 @@ ENCODINGS = ["utf-8", "utf-8-sig", "utf-16-le-mark", "utf-16-be-mark", "cp1252"]
     digits=st.integers(1, 12),
     friction=st.lists(st.floats(0.0, 3.0), min_size=3, max_size=12),
 )
-@settings(max_examples=60, deadline=None)
 def test_any_dialect_comes_back_or_is_asked_for(
     tmp_path_factory, separator, decimal, encoding, digits, friction
 ):
@@ -117,6 +116,7 @@ BARE_HEAD = ["Samples;200;200", "X0;0.0;0.0", "Delta;0.5;0.5", "Unit;N;N"]
 ONE = np.ones(ROWS)
 FORCES = {"tangential_force": {"name": "Fx", "unit": "N"}, "normal_force": {"name": "Fz", "unit": "N"}}
 BY_NUMBER = {"columns": {"time": {"name": 1, "unit": "s"}, "friction": 2}}
+SECOND, ENDS = {"columns": {"friction": "mu"}}, {"format": {"ends": ["Summary"]}}
 FORMAT = {"separator": ";", "decimal": ",", "header_line": 2, "units_below": True}
 
 MORE = {"time [s]": TIME, "COF": FRICTION, "Fz [N]": FRICTION + 10.0}
@@ -135,7 +135,6 @@ UNIT_STYLES = {
 COLUMNS = (TIME, FRICTION, FRICTION)
 TWO_MEANINGS = {"T [sec]": TIME, "t [\u00b0C]": 20 + TIME, "Friction [N]": FRICTION, "Load [N]": ONE}
 
-COMPEND = raw_logs.compend(FRICTION, TIME, fast_data_every=7)
 MINUS = csv({"time [s]": TIME, "Ff [N]": FRICTION, "Fn [N]": -ONE}).replace(b"-", "\u2212".encode())
 THE_SAME = {  # a log, or a log and its map
     "Anton Paar text": raw_logs.anton_paar(FRICTION, TIME),
@@ -154,10 +153,7 @@ THE_SAME = {  # a log, or a log and its map
         for style, (names, units) in UNIT_STYLES.items()
     },
     "units of names with two meanings": csv(TWO_MEANINGS | {"Speed [rpm]": 60 * ONE}),
-    "a table that is no log, by its first line": (
-        csv() + b"\nSummary\nLoad [N],Mean\n5,0.12\n6,0.13\n",
-        {"format": {"ends": ["Summary"]}},
-    ),
+    "a table that is no log": (csv() + b"\nSummary\nLoad [N],Mean\n5,0.12\n6,0.13\n", ENDS),
     "in quotes, as spreadsheets write": lines('"time [s]";"COF"', '"{T}";"{F}"'),
     "decimal commas in quotes between commas": lines('"time, s","COF, -",note', '"{T}","{F}","a, b"'),
     "a remark in quotes leaves the commas of numbers": csv(
@@ -170,7 +166,7 @@ THE_SAME = {  # a log, or a log and its map
     "German dates beside decimal commas": lines("Datum;Zeit [s];Reibwert", "01.02.2026;{T};{F}"),
     "closing remarks": csv(tail=["", "stopped by operator", "Total 12:00"]),
     "empty lines between rows": csv().replace(b"\n2.0", b"\n\n  \n2.0", 1),
-    "lines of fast data between rows": COMPEND,
+    "lines of fast data between rows": raw_logs.compend(FRICTION, TIME, fast_data_every=7),
     "numbers above the names, whose line the map states": (
         csv({"X": TIME, "Fx": FRICTION, "Fz": ONE}, separator=";", head=BARE_HEAD),
         {"columns": {"time": {"name": "X", "unit": "s"}} | FORCES, "format": {"header_line": 5}},
@@ -180,14 +176,8 @@ THE_SAME = {  # a log, or a log and its map
         csv({"time [s]": TIME, "COF": FRICTION * 9, "Fx [N]": FRICTION, "Fz [N]": ONE}),
         {"columns": {"tangential_force": "Fx"}},
     ),
-    "lines of names and units by their place": (
-        lines("first remark\nZeit;Reibwert\ns;-", "{T};{F}"),
-        {"format": FORMAT},
-    ),
-    "the second of two frictions by the map": (
-        csv({"time [s]": TIME, "COF": 2 * FRICTION, "mu": FRICTION}),
-        {"columns": {"friction": "mu"}},
-    ),
+    "lines of names and units by place": (lines("remark\nZeit;Reibwert\ns;-", "{T};{F}"), {"format": FORMAT}),
+    "the second of two frictions": (csv({"time [s]": TIME, "COF": 2 * FRICTION, "mu": FRICTION}), SECOND),
     "forces named by words": csv({"t [s]": TIME, "Reibkraft FR [N]": FRICTION, "Normalkraft FN [N]": ONE}),
     "forces named by signs": csv({"t [s]": TIME, "F_t [N]": FRICTION, "F_n [N]": ONE}),
     **{
@@ -209,10 +199,7 @@ THE_SAME = {  # a log, or a log and its map
 }
 
 LOGGED = {  # columns beside friction and time
-    "Anton Paar text, nano": {
-        "normal_force": 5.0 * ONE,
-        "tangential_force": as_written(FRICTION * 5e3) / 1e3,
-    },
+    "Anton Paar text, nano": {"normal_force": 5 * ONE, "tangential_force": as_written(FRICTION * 5e3) / 1e3},
     "Anton Paar text": {"distance": as_written(TIME * 0.1), "wear_depth": as_written(TIME * 1e-3) * 1e-6},
     "separator": {"normal_force": as_written(FRICTION + 10.0)},
     "units of": {"temperature": 293.15 + as_written(TIME)},
@@ -239,11 +226,7 @@ RTEC = raw_logs.rtec(FRICTION, TIME)
 GAPS = csv({"time [s]": TIME, "COF": FRICTION, "temp [C]": np.where(TIME < 1.25, np.nan, 20.0)})
 PATTERNS = {
     "test": {"medium": "gaseous nitrogen", "counterface": "440C", "temperature": "77 K"},
-    "files": {
-        "armalon_*.txt": {"material": "Armalon"},
-        "*_ln2.txt": {"medium": "liquid nitrogen"},
-        "other.txt": {"material": "PEEK"},
-    },
+    "files": {"armalon_*.txt": {"material": "Armalon"}, "*_ln2.txt": {"medium": "liquid nitrogen"}},
 }
 FOLDERS = {"files": {"armalon/*.csv": {"material": "Armalon"}, "a.csv": {"sample": "A"}}}
 RADIUS = {"test": {"track_radius": "15 mm"}}
@@ -326,40 +309,28 @@ TEN = {"Ff [N]": FRICTION * 10.0}
 TENFOLD = as_written(FRICTION * 10.0) / 10.0
 BY_TEN = {"test": {"normal_force": "10 N"}}
 
-MADE = {  # columns beside the time, the friction made of them, begin of a note, map
-    "percent": ({"COF [%]": FRICTION * 100.0}, as_written(FRICTION * 100.0) / 100.0, "", None),
-    "a constant load of the map": (
-        *(TEN, TENFOLD, "friction is |tangential force| / 10 N, the constant given", BY_TEN),
-    ),
-    "a constant load of the map and a column without load": (
-        *(TEN | {"Fn [N]": 0.0 * ONE}, TENFOLD, "the column of normal force has no load in any row", BY_TEN),
-    ),
-    "compression that counts negative": (
-        *(TEN | {"Fn [N]": -10.0 * ONE}, TENFOLD, "the normal force is negative in the file", None),
-    ),
-    "rows without compression": (
-        *(TEN | {"Fn [N]": LOAD}, TENFOLD[LOAD > 0], "2 rows without compression", None),
-    ),
-    "strokes there and back": (
-        *({"COF": SIGN * FRICTION}, as_written(FRICTION), "friction is negative in 30 of 60 rows", None),
-    ),
+MADE = {  # begin of a note: columns beside the time, the friction made of them, map
+    "": ({"COF [%]": FRICTION * 100.0}, as_written(FRICTION * 100.0) / 100.0),
+    "friction is |tangential force| / 10 N, the constant given": (TEN, TENFOLD, BY_TEN),
+    "the column of normal force has no load in any row": (TEN | {"Fn [N]": 0.0 * ONE}, TENFOLD, BY_TEN),
+    "the normal force is negative in the file": (TEN | {"Fn [N]": -10.0 * ONE}, TENFOLD),
+    "2 rows without compression": (TEN | {"Fn [N]": LOAD}, TENFOLD[LOAD > 0]),
+    "friction is negative in 30 of 60 rows": ({"COF": SIGN * FRICTION}, as_written(FRICTION)),
     **{
-        f"a code of {code} for a missing value": (
+        f"friction is above 5 in 3 of 60 rows (up to {abs(code):.4g})": (
             {"COF": np.where(FEW, code, FRICTION)},
             as_written(FRICTION[~FEW]),
-            f"friction is above 5 in 3 of 60 rows (up to {abs(code):.4g})",
-            None,
         )
-        for code in (-999.0, 99.99, 9.9e37)
+        for code in (-999.0, 99.99, 9.9e37)  # for a missing value
     },
 }
 
 
-@pytest.mark.parametrize("what", MADE)
-def test_friction_is_a_magnitude_made_from_what_is_logged(tmp_path, what):
+@pytest.mark.parametrize("note", MADE)
+def test_friction_is_a_magnitude_made_from_what_is_logged(tmp_path, note):
     """With a note on what was done, and the rows left out counted; a code is not called negative."""
-    columns, friction, note, given = MADE[what]
-    log = read(tmp_path, csv({"time [s]": TIME} | columns), given and column_map(given))
+    columns, friction, *given = MADE[note]
+    log = read(tmp_path, csv({"time [s]": TIME} | columns), column_map(*given) if given else None)
     np.testing.assert_allclose(log.friction, friction, rtol=ULP)
     assert log.missing == ROWS - len(friction)
     assert any(one.startswith(note) for one in log.notes) or not note

@@ -91,7 +91,7 @@ def test_a_film_that_fails_in_running_in_is_told_with_both_levels(share):
 
 
 FALL = 0.08 + 0.12 * np.exp(-np.arange(4000) / 100.0)
-LATE_AND_LOST = log(normal_force=lambda t: np.where((t > 40.0) & (t < 350.0), 10.0, 0.5))
+LOST = log(normal_force=lambda t: np.where((t > 40.0) & (t < 350.0), 10.0, 0.5))
 CURE = "Look at the plot; if the film failed, use the log only up to the rise."
 FAILS = noisy(lambda t: np.where(t > 80.0, 0.25, FALL))
 SEIZES = noisy(lambda t: np.where(t > 300.0, 0.6, 0.12))
@@ -103,12 +103,8 @@ TOLD = {  # a log, begin of a flag and words in it (None: no such flag), and wha
         *(log(replace(QUIET, run_in=0.9, excess=0.2)), {"Running-in does not end": ""}),
         lambda test: test.run_in_end > 0.5 * 400,
     ),
-    "a cut behind the middle with its share, 60 %, and the span of it": (
-        *(noisy(lambda t: 0.12 + 0.1 * (t < 240.0)), {"Running-in takes 6": ""}),
-    ),
-    "a film that fails after a fall, with the level of the film, not of the start": (
-        *(FAILS, {"Friction rises from 0.08": "to 0.25 near"}),
-    ),
+    "a cut behind the middle": (noisy(lambda t: 0.12 + 0.1 * (t < 240.0)), {"Running-in takes 6": ""}),
+    "a film that fails after a fall, at its own level": (FAILS, {"Friction rises from 0.08": "to 0.25 near"}),
     "fewer than four rows a cycle": (
         *(log(replace(QUIET, rows_of_a_cycle=2.5)), {"The log has 2.5 rows a cycle": ""}),
         lambda test: test.cycles == 0,
@@ -126,10 +122,7 @@ TOLD = {  # a log, begin of a flag and words in it (None: no such flag), and wha
         {"Seizure or a failed film": None},
         lambda test: test.steady_end > 390.0,
     ),
-    "a load that is late and lost": (
-        *(LATE_AND_LOST, LOADED),
-        lambda test: test.run_in_end >= 40.0 and test.steady_end <= 350.0,
-    ),
+    "a load late and lost": (LOST, LOADED, lambda test: test.run_in_end >= 40.0 and test.steady_end <= 350.0),
     "fewer independent values than twenty": (
         log(replace(QUIET, correlation=0.03), knows_cycle=False),
         {"The steady part holds 12 independent values": "fewer than 20"},
@@ -141,10 +134,7 @@ TOLD = {  # a log, begin of a flag and words in it (None: no such flag), and wha
         *(log(friction=lambda t: np.full(t.size, 0.125)), {"Friction is 0.125 in every row": ""}),
         lambda test: (test.friction, test.standard_error, test.half_width) == (0.125, 0.0, 0.0),
     ),
-    "coarse steps, whose mean is 0.1216": (
-        *(COARSE, {}),
-        lambda test: test.interval[0] < 0.123 < test.interval[1],
-    ),
+    "steps whose mean is 0.1216": (COARSE, {}, lambda test: test.interval[0] < 0.123 < test.interval[1]),
 }
 
 
@@ -260,12 +250,7 @@ LOGS = [
     ("a cut in what is not there", {}, "20 m", "the log has time"),
     ("a cut in cycles that are not there", {}, "20 cycles", "needs a column of cycles"),
     ("a cut behind the end", {}, "1 h", "must lie before the end of the test, 6.665 min"),
-    (
-        "a cut at the end",
-        {"time": lambda time: np.arange(time.size)},
-        "3999 s",
-        "must lie before the end of the test",
-    ),
+    ("a cut at the end", {"time": lambda time: np.arange(time.size)}, "3999 s", "must lie before the end"),
     ("a cut that leaves little", {}, "399.7 s", "rows of steady friction"),
 ]
 

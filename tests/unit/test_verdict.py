@@ -98,12 +98,9 @@ def test_a_cage_is_judged_by_its_runs(found, rows, cage, evidence):
     assert result.reason.endswith(".")
 
 
+FED = {"pocket_power": 11.0, "land_power": -3.0}
 REASONS = [
-    (
-        "Hz in their judged part; friction feeds the cage 11 W.",
-        many(0, 16),
-        {"pocket_power": 11.0, "land_power": -3.0},
-    ),
+    ("Hz in their judged part; friction feeds the cage 11 W.", many(0, 16), FED),
     ("2 settle, 8 roll, 6 whirl; more may decide: raise [stability] runs.", many(2, 6, 0, 0, 8), {}),
     ("46 settle, 18 whirl; more runs would not change that, less friction would.", many(46, 18), {}),
     ("the cage then rubs on its land with 4 N at 3 m/s (1.2 W).", many(8), RUBS),
@@ -138,10 +135,8 @@ def test_balls_that_leave_their_pockets_are_counted_with_place_and_time():
     """Their runs are unresolved, and the reason names the first ball; a few keep no cage from STABLE."""
     left, when = np.zeros((3, 16), dtype=int), np.zeros((3, 16))
     left[1, :2], when[1, :2] = (4, 9), (0.03, 0.012)
-    many_left = ensemble(
-        many(0, 0, 0, 16), cause=int(Cause.LEFT_POCKET), left_ball=np.full((3, 16), 2), left_time=0.012
-    )
-    result = judge(CAGE, many_left)
+    first = {"left_ball": np.full((3, 16), 2), "left_time": 0.012}
+    result = judge(CAGE, ensemble(many(0, 0, 0, 16), cause=int(Cause.LEFT_POCKET), **first))
     assert (result.verdict, result.left_pocket, result.probability_stable) == (UNDECIDED, 48, 0.0)
     said = "a ball reaches the edge of its pocket's wall; check [cage] diameters and clearances"
     assert result.reason.endswith(f"{said} (first ball 2 after 12 ms).")
@@ -448,9 +443,8 @@ def test_a_kick_from_which_all_runs_whirl_is_the_worst(runs):
 def test_a_cage_that_its_land_keeps_moving_is_not_stable(kept):
     """More than a tenth of the runs from any kick suffice; the evidence is of the kick with most of them."""
     cause = np.where(np.arange(24) < np.array(kept)[:, np.newaxis], int(Cause.LAND_FRICTION), 0)
-    found = judge(
-        OF_THREE, replace(ensemble(np.full(cause.shape, SETTLED), OF_THREE.ball_count), cause=cause)
-    )
+    runs = ensemble(np.full(cause.shape, SETTLED), OF_THREE.ball_count)
+    found = judge(OF_THREE, replace(runs, cause=cause))
     assert (found.verdict is Verdict.STABLE) == (max(kept) <= 0.1 * 24)
     assert found.worst_kick == found.by_kick[int(np.argmax(kept))].kick
 
