@@ -119,9 +119,9 @@ def test_axes_give_back_the_curvatures(curvatures):
     """From curvatures to half lengths and back, longer along or across rolling; to rounding."""
     found = ellipse_of_curvatures(200.0, *curvatures, 1.1e11)
     again = ellipse_of_axes(200.0, found.semi_minor, found.semi_major, 1.1e11)
-    assert (again.curvature_rolling, again.curvature_transverse) == pytest.approx(curvatures, rel=1e-9)
+    assert (again.curvature_rolling, again.curvature_transverse) == pytest.approx(curvatures, rel=1e-14)
     for name in ("max_pressure", "approach"):
-        assert getattr(again, name) == pytest.approx(getattr(found, name), rel=1e-9)
+        assert getattr(again, name) == pytest.approx(getattr(found, name), rel=1e-14)  # rounding
     assert (found.semi_minor < found.semi_major) == (curvatures[0] > curvatures[1])
 
 

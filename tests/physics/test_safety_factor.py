@@ -187,7 +187,9 @@ def test_work_among_free_balls_is_foreseen_where_they_are_asked(highest, ball, s
     study = separatrix.read_study("lox-turbopump-radial")
     state = separatrix.solve(replace(study, cage=replace(study.cage, ball=ball)), study.ranking.candidates[0])
     settings = settings_for(study.stability, moving_cage(state, 0.0))
-    assert free_work(state, settings, highest) == pytest.approx(share * 0.75 * 2.3 * 2.16, abs=5e-3)  # digits
+    assert free_work(state, settings, highest) == pytest.approx(
+        share * 0.75 * 2.3 * 2.16, abs=9e-3
+    )  # half a digit of 2.16
 
 
 @pytest.mark.parametrize(

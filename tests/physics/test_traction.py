@@ -185,7 +185,7 @@ def test_the_field_adds_up_to_the_curve():
     areas = np.abs(np.diff(field.along, axis=1))[:, :1] * (2.0 * A / 81)
     # strips of equal width: 1/81^1.5 at the ends of the ellipse; elements: half a percent at 200
     assert (field.pressure * areas).sum() / N == pytest.approx(1.0, abs=2e-3)
-    assert (field.shear * areas).sum() / N == pytest.approx(expected[0], rel=1e-2)
+    assert (field.shear * areas).sum() / N == pytest.approx(expected[0], rel=7e-3)  # both of these
     assert np.all(np.abs(field.shear) <= MU * field.pressure * (1.0 + 1e-9))  # rounding
     stuck = field.slip == 0.0
     assert 0 < np.count_nonzero(stuck) < stuck.size

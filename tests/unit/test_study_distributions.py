@@ -49,7 +49,7 @@ def test_every_form_is_read(text, study_of):
     # What follows the sign is two standard deviations, as on a certificate (GUM, 7.2.4).
     assert found.kind == wanted.kind
     moments = wanted.mean, wanted.standard_deviation
-    assert (found.mean, found.standard_deviation) == pytest.approx(moments, rel=1e-14)
+    assert (found.mean, found.standard_deviation) == pytest.approx(moments, rel=1e-14)  # rounding of the unit
     assert found.text == text
     assert study.film.thickness == found.mean
 

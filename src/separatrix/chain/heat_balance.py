@@ -231,7 +231,7 @@ def _required(study: Study, name: str, temperature: Kelvin) -> float:
         if study.fluid is None:
             rule = "is not a fluid of the library, which [cooling] needs"
             cure = (
-                'Write its state, too: "liquid nitrogen", "GHe"; `separatrix materials list` has the names.'
+                'Write "liquid nitrogen" or "GHe", with the state; `separatrix materials list` has the names.'
             )
         where = f"{study.place('operation.fluid')}: [operation] fluid"
         raise InputError(where, rule, str(study.operation.fluid), cure)

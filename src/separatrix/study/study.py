@@ -380,7 +380,7 @@ def _stiffness_is_known(cage: CageDesign, ranking: RankingQuestion | None) -> Fa
 
 @check(Study)
 def _mass_is_known(cage: CageDesign, ranking: RankingQuestion | None) -> Faults:  # noqa: ARG001 - has the density
-    """A mass is given, or made of the ring's shape and the density of its material, perhaps a candidate."""
+    """A mass is given, or that of a ring of known shape and density, perhaps of a candidate."""
     if cage.has_shape and cage.mass is None and (cage.material is None or cage.material.density is None):
         cure = "Give it, or a cage material with its density."
         yield Fault(("cage", "mass"), "is missing, and the density of the cage is not known", cure, "")

@@ -186,10 +186,8 @@ def motion_facts(answer: Part) -> Facts:
         slip = "{cage_slip} of the ball set's speed (positive: the cage lags)"
     pocket = "{largest_contact_force}"
     if answer.force_exceeds_races:
-        pocket = (
-            "above {force_limit}, whose friction is all that the races hold: beyond it this model of a ball "
-        )
-        pocket += "has no meaning (`[cage] ball = 'free'` has)"
+        pocket = "above {force_limit}, whose friction is all that the races hold: beyond it this model of a "
+        pocket += "ball has no meaning (`[cage] ball = 'free'` has)"
     tilt = "{largest_tilt} at most; without a steady phase to the offset"
     if "tilt_phase" in answer and (answer.tilt_coherence or 0.0) >= STEADY:
         tilt = "{largest_tilt} at most; {tilt_phase} ahead of the offset (0: a forward cone)"
