@@ -80,13 +80,16 @@ def gripped(damping: float, friction: float = 0.0, **change: object) -> MovingCa
 def linear_roots(cage: MovingCage) -> np.ndarray:
     """Exact rates of small motions without clearance, fastest growing first, shape (3,) or (4,) [rad/s].
 
-    (lambda + i Omega)^2 (lambda D + k) + (1 - i sigma f) omega_0^2 lambda D = 0, D = m_e lambda + C.
+    (lambda + i Omega)^2 (lambda D + k) + (1 - i sigma f) omega_0^2 lambda D = 0, D = m_e lambda + C; in
+    spheres 2 lambda D + (1 + i sigma f) k in place of the last lambda D.
     """
     law, w0 = cage.traction, whirl_rate(cage)
     mass, slope = (0.0, cage.race_damping) if law is None else (law.mass, law.slope)
     yields = np.array([mass * w0 * w0, slope * w0, 0.0])
     turned = np.poly([-1j * cage.cage_speed / w0] * 2)
-    driven = (1.0 - 1j * cage.friction_sense * cage.ball_cage_friction) * yields
+    driving, pressed = 1j * cage.friction_sense * cage.ball_cage_friction, np.zeros(3, dtype=complex)
+    pressed[2] = cage.is_wrapped * (1.0 + driving) * cage.ball_cage_stiffness
+    driven = (1.0 - driving) * ((1.0 + cage.is_wrapped) * yields + pressed)
     held = np.polymul(turned, yields + np.array([0.0, 0.0, cage.ball_cage_stiffness]))
     roots = np.roots(np.polyadd(held, driven)) * w0
     return roots[np.argsort(-roots.real)]
@@ -158,7 +161,7 @@ def random_cage(rng: np.random.Generator, space: bool) -> MovingCage:
     """A cage with every input of the motion drawn; ranges of real bearings."""
     draw = rng.uniform
     mass, radius, balls = 10.0 ** draw(-3.0, -0.8), draw(0.01, 0.06), int(rng.integers(7, 16))
-    shape = PocketShape(rng.choice(["square", "cylindrical", "elongated"]))
+    shape = PocketShape(rng.choice(["square", "cylindrical", "elongated", "spherical"]))
     clearance, speed = draw(1e-4, 6e-4), draw(20.0, 900.0)
     return MovingCage(
         mass=mass, moment_of_inertia=mass * radius**2, ball_count=balls, pitch_radius=radius,

@@ -42,7 +42,7 @@ def outline(cage: MovingCage) -> tuple[float, float, float]:
     c = cage.pocket_clearance / 2.0
     if cage.pocket_shape is PocketShape.SQUARE:
         return c, math.inf, 0.0
-    end = c if cage.pocket_shape is PocketShape.CYLINDRICAL else (cage.pocket_axial_clearance or 0.0) / 2.0
+    end = (cage.pocket_axial_clearance or 0.0) / 2.0 if cage.pocket_shape is PocketShape.ELONGATED else c
     return c - end, 0.0, end
 
 
@@ -83,10 +83,11 @@ class Plane:
         t = (g * self.at.conj()).imag + R * turned - lead
         t, z = t - np.clip(t, -apart, apart), cage.pocket_axial_offset
         z -= min(max(z, -beside), beside)
-        off = np.hypot(t, z)
+        r = cage.is_wrapped * ((g * self.at.conj()).real + cage.pocket_radial_offset)
+        off = np.sqrt(t**2 + z**2 + r**2)
         depth, out = np.maximum(off - around, 0.0), np.zeros((3, len(t)))
         for j in np.flatnonzero(depth):  # axes: outward, along the orbit, along the axis
-            n = -np.array([0.0, t[j], z]) / off[j]
+            n = -np.array([r[j], t[j], z]) / off[j]
             push = (
                 cage.ball_cage_stiffness * depth[j]
                 if cage.hertz_coefficient is None
@@ -98,7 +99,8 @@ class Plane:
             slide -= (slide @ n) * n
             rub = cage.ball_cage_friction * slide / math.sqrt(slide @ slide + cage.pivot_speed**2)
             force = push * (n + rub)
-            out[:, j] = force[0], force[1], R * force[1] - lever * n[1] * force[0]
+            couple = lever * push * (n[0] * rub[1] - n[1] * rub[0])
+            out[:, j] = force[0], force[1], R * force[1] + couple
         return out
 
     def land_force(

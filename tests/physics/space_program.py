@@ -26,7 +26,7 @@ def along(one: Array, other: Array) -> Array:
 
 
 class SmallSteps:
-    """A cage in space with bores and dampers, in the frame of the housing.
+    """A cage in space with bores or spheres and dampers, in the frame of the housing.
 
     State: centre (3), rotation vector's quaternion (4), velocity (3), spin in space (3), then for every ball
     its lead and its place along the groove.
@@ -46,7 +46,7 @@ class SmallSteps:
         ball = R * out + lead * forward + axial * AXIS
         bore = Rotation.from_quat(state[3:7]).apply(outward(self.angles))
         away = ball - r - R * bore
-        away -= along(away, bore) * bore
+        away -= 0.0 if cage.is_wrapped else along(away, bore) * bore
         offset = np.linalg.norm(away, axis=1, keepdims=True)
         away /= np.maximum(offset, 1e-30)
         push = cage.ball_cage_stiffness * np.maximum(offset - cage.pocket_clearance / 2.0, 0.0)

@@ -15,7 +15,7 @@ from separatrix.chain.land_fluid import annulus_mass, decay_rate, land_fluid
 from separatrix.study.ball_bearing import Expansion
 from separatrix.study.distribution import uniform
 from separatrix.study.keys import with_values
-from separatrix.study.study import ClearanceState, Guidance, Material
+from separatrix.study.study import ClearanceState, Guidance, Material, PocketShape
 from separatrix.verdict.beyond_models import pocket_of
 from separatrix.verdict.draws import sample
 from separatrix.verdict.effects import MOVED, WIDE, effects_on
@@ -70,6 +70,22 @@ def test_pocket_and_land_by_hand():
     assert found.guesses == ()
 
 
+def test_spherical_pockets_move_off_their_balls():
+    """By the growth of the cage beyond that of the rings, which takes of their clearance."""
+    sphere = {"pocket_shape": PocketShape.SPHERICAL, "pocket_clearance": 2.1e-3}
+    moved = running(**SHAPE, **sphere).pocket_radial_offset
+    assert moved == pytest.approx(-BEARING.pitch_diameter / 2.0 * 203.0 * 30e-6, rel=1e-12)
+    assert running(**SHAPE).pocket_radial_offset == 0.0
+    cage = replace(RUNNING.cage, **sphere)
+    bearing = replace(BEARING, ball_material=STEEL, ring_material=STEEL)
+    there = solve(replace(RUNNING, bearing=bearing, cage=replace(cage, material=PLASTIC)))
+    moves = moving_cage(there, 0.1)
+    assert moves.pocket_radial_offset == there.clearances.pocket_radial_offset < 0.0
+    assert moves.half_play == pytest.approx(
+        math.sqrt((moves.pocket_clearance / 2.0) ** 2 - moves.pocket_radial_offset**2), rel=1e-12
+    )
+
+
 def test_thick_ring_solves_its_differential_equation():
     """R u'' + u' - u/r = -(1 - nu^2) rho w^2 r^2 / E with free edges, by collocation."""
     E, nu, rho, w = PLASTIC.elastic_modulus, PLASTIC.poisson_ratio, PLASTIC.density, 2000.0
@@ -122,6 +138,7 @@ def test_published_contractions():
 UNKNOWN = [
     ({"pocket_clearance": 20e-6}, r"^[^\n]*pocket_clearance closes to -.* at 90 K .*20 um at 293 K[^\n]*$"),
     ({"material": replace(PLASTIC, thermal_expansion=None)}, r"thermal expansion from 293 K to 90 K.*um/m/K"),
+    ({"pocket_shape": PocketShape.SPHERICAL, "pocket_clearance": 4e-4}, "pocket_clearance closes to -"),
     ({"temperature": None}, "temperature is missing"),
     ({"material": None}, "material is missing"),
 ]

@@ -112,11 +112,12 @@ def _cage(ball: float, pitch: float, count: int, rng: np.random.Generator) -> li
         f'mass = "{mass:.5f} g"',
         f"material = {_polymer(rng)}",
         f'pocket_clearance = "{min(ball * rng.uniform(0.01, 0.05), gap / 3.0):.5f} mm"',
-        f'pocket_shape = "{rng.choice(["square", "square", "cylindrical"])}"',
-        f'gravity = "{rng.choice([0.0, 9.81]):g} m/s2"',
     ]
+    shape, gravity = rng.choice(["square", "square", "cylindrical"]), rng.choice([0.0, 9.81])
     guidance = rng.choice(["outer", "inner", "ball"], p=[0.5, 0.35, 0.15])
-    lines.append(f'guidance = "{guidance}"')
+    if guidance == "ball":  # with pockets that wrap round their balls
+        shape = "spherical"
+    lines += [f'pocket_shape = "{shape}"', f'gravity = "{gravity:g} m/s2"', f'guidance = "{guidance}"']
     if guidance == "ball":
         return lines
     return [

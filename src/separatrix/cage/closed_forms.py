@@ -21,6 +21,7 @@ from separatrix.ground.units import (
     Kilogram,
     Metre,
     NewtonPerMetre,
+    NewtonSecondPerMetre,
     PerSecond,
     Ratio,
     Second,
@@ -35,6 +36,9 @@ LOWEST_RESTITUTION = 1e-4
 REAL = 1e-9
 """Imaginary over whole of a root that counts as real."""
 
+MOST_FRICTION: Ratio = 100.0
+"""Above it no friction is searched."""
+
 
 def linear_whirl_frequency(cage: MovingCage) -> Hertz:
     r"""Whirl without clearance at the stability limit, :math:`\sqrt{Zk/2M}/2\pi`, ball set at rest [Hz]."""
@@ -47,13 +51,30 @@ def whirl_rate(cage: MovingCage) -> float:
 
 
 def linear_critical_friction(cage: MovingCage) -> Ratio:
-    r"""Friction above which it whirls without clearance, :math:`\sqrt{2kM/Z}/C_\mu`, ball set at rest [-].
+    r"""Friction above which it whirls without clearance, ball set at rest: `damped_critical_friction` [-].
 
     With balls of inertia that of small motions, from the roots of their polynomial.
     """
-    if cage.traction is not None:
-        return _inertial_critical_friction(cage, cage.traction)
-    return math.sqrt(2.0 * cage.ball_cage_stiffness * moving_mass(cage) / cage.ball_count) / cage.race_damping
+    if cage.traction is None:
+        return damped_critical_friction(cage, cage.race_damping)
+    return (_wrapped_critical_friction if cage.is_wrapped else _inertial_critical_friction)(
+        cage, cage.traction
+    )
+
+
+def damped_critical_friction(cage: MovingCage, damping: NewtonSecondPerMetre) -> Ratio:
+    r"""The same among dampers: :math:`\kappa/\omega_0 = \sqrt{2kM/Z}/C`, and of spherical pockets less [-].
+
+    These hold the cage along the radius too, without damping. From
+    :math:`\lambda^2(\lambda + \kappa) + (1 - i\sigma f)\,\omega_0^2(2\lambda + \kappa + i\sigma f\kappa) = 0`
+    it whirls at :math:`\sqrt2\,\omega_0` and
+    :math:`f = \kappa/(\sqrt2\,\omega_0 + \sqrt{2\omega_0^2 + \kappa^2})`.
+    """
+    stiff = 2.0 * cage.ball_cage_stiffness * moving_mass(cage) / cage.ball_count
+    over_rate = math.sqrt(stiff) / damping  # kappa / omega_0
+    return (
+        over_rate / (math.sqrt(2.0) + math.hypot(math.sqrt(2.0), over_rate)) if cage.is_wrapped else over_rate
+    )
 
 
 def _inertial_critical_friction(cage: MovingCage, law: BallTraction) -> Ratio:
@@ -69,6 +90,28 @@ def _inertial_critical_friction(cage: MovingCage, law: BallTraction) -> Ratio:
     real = rates[np.abs(rates.imag) < REAL * np.abs(rates)].real
     frictions = k * C / (w0 * real * (mass * real**2 + held))
     return float(min((f for f in frictions if f > 0.0), default=math.inf))
+
+
+def _wrapped_critical_friction(cage: MovingCage, law: BallTraction) -> Ratio:
+    r"""The same in spherical pockets: where the first root of their polynomial begins to grow.
+
+    :math:`\lambda^2(\lambda D + k) + (1 - if)\,\omega_0^2(2\lambda D + (1 + if)k) = 0`,
+    :math:`D = m_e\lambda + C`.
+    """
+    from scipy.optimize import brentq
+
+    k, w0 = cage.ball_cage_stiffness, whirl_rate(cage)
+    yields = np.array([law.mass * w0**2, law.slope * w0, 0.0])  # in units of omega_0
+
+    def growth(friction: Ratio) -> float:
+        held = np.append(yields[:2], [k, 0.0, 0.0])
+        driven = (1.0 - 1j * friction) * (2.0 * yields + np.array([0.0, 0.0, (1.0 + 1j * friction) * k]))
+        return float(np.roots(np.polyadd(held, driven)).real.max())
+
+    high = damped_critical_friction(cage, law.slope)
+    while growth(high) <= 0.0 and high < MOST_FRICTION:
+        high *= 2.0
+    return float(brentq(growth, 0.0, high, xtol=1e-12)) if growth(high) > 0.0 else math.inf
 
 
 def room(cage: MovingCage) -> Metre:
@@ -125,17 +168,17 @@ def axial_half_play(cage: MovingCage) -> Metre:
 
 
 def drifts(cage: MovingCage) -> bool:
-    """Whether the centre is free to drift: no land, and the turning of the ball set or gravity moves it."""
-    return math.isinf(cage.land_gap) and (cage.cage_speed != 0.0 or cage.gravity > 0.0)
+    """Whether nothing guides the centre, and the turning of the ball set or gravity moves it."""
+    return not cage.is_guided and (cage.cage_speed != 0.0 or cage.gravity > 0.0)
 
 
 def drift_rate_law(cage: MovingCage) -> PerSecond:
-    r"""Growth rate of a landless cage's offset in the turning frame, :math:`2M\Omega^2/(ZC_\mu)` [1/s].
+    r"""Growth rate of an unguided cage's offset in the turning frame, :math:`2M\Omega^2/(ZC_\mu)` [1/s].
 
-    The slow root of the polynomial, for :math:`\Omega \ll \omega_0` and a small friction; 0 with a land.
+    The slow root of the polynomial, for :math:`\Omega \ll \omega_0` and a small friction; 0 of a guided one.
     """
     law = 2.0 * centrifugal_stiffness(cage) / (cage.ball_count * cage.slow_damping)
-    return law if math.isinf(cage.land_gap) else 0.0
+    return 0.0 if cage.is_guided else law
 
 
 def felt_mass(cage: MovingCage, *, may_turn: bool = True) -> float:

@@ -64,27 +64,31 @@ def ball_rates(s, of_balls, rates_of, a, p, places, ball, space, level):
                 push = p[STIFFNESS + l] * depth
                 pr = vr - lever * turning * nt
                 ez, er, slide = level_friction(p[FRICTION + l] * push, nt, lever, oz, o_r, pr, p[PIVOT + l])
-                nz, et, ft = ZERO, ZERO, push * nt
+                nz, nr, et, ft = ZERO, ZERO, ZERO, push * nt
                 a[RUB + l] += er * pr
             else:
-                depth, nz, nt = pocket_depth(along, across, q[AROUND + l], q[APART + l], p[BESIDE + l])
+                outward = p[WRAPPED + l] * (a[GX + l] * c + a[GY + l] * n) + p[OUTWARD + l]
+                around, apart, beside = q[AROUND + l], q[APART + l], p[BESIDE + l]
+                depth, nz, nr, nt = pocket_depth(along, across, outward, around, apart, beside)
                 push = (p[STIFFNESS + l] + p[HERTZ + l] * math.sqrt(depth)) * depth
                 # velocity of the wall where it is touched: (w_r, w_t, turning) x lever n
-                pr, pt, pz = vr + lever * (wt * nz - turning * nt), vt - lever * wr * nz, vz + lever * wr * nt
+                pz, pr = vz + lever * (wr * nt - wt * nr), vr + lever * (wt * nz - turning * nt)
+                pt = vt + lever * (turning * nr - wr * nz)
                 ez, er, et, slide = pocket_friction(
-                    p[FRICTION + l] * push, nz, nt, lever, oz, o_r, ot, u, pz, pr, pt, p[PIVOT + l]
+                    p[FRICTION + l] * push, nz, nr, nt, lever, oz, o_r, ot, u, pz, pr, pt, p[PIVOT + l]
                 )
                 ft, fz = push * nt + et, push * nz + ez
                 a[RUB + l] += ez * pz + er * pr + et * pt
             q[FORCE + l], q[HEAT + l] = push, push * slide
-            a[FX + l] += er * c - ft * n
-            a[FY + l] += er * n + ft * c
-            a[FS + l] += ft - lever * p[PER_RADIUS + l] * nt * er
+            fr, twist = push * nr + er, nr * et - nt * er  # force outward; friction's couple over the lever
+            a[FX + l] += fr * c - ft * n
+            a[FY + l] += fr * n + ft * c
+            a[FS + l] += ft + lever * p[PER_RADIUS + l] * twist
             uz = ZERO
             if space:
                 uz = -(fz + p[GROOVE_STIFFNESS + l] * (b[GROOVE + l] - REST_PLACE)) * p[PER_GROOVE + l]
                 db[GROOVE + l] = uz
-                mr, mt = lever * (nt * ez - nz * et), lever * nz * er - radius * fz
+                mr, mt = lever * (nt * ez - nz * et), lever * (nz * er - nr * ez) - radius * fz
                 a[FZ + l] += fz
                 a[MX + l] += mr * c - mt * n
                 a[MY + l] += mr * n + mt * c
@@ -111,11 +115,11 @@ def ball_rates(s, of_balls, rates_of, a, p, places, ball, space, level):
                 gain = (held * (fi + fo) - ft) * per_m
                 base_r, base_t = ramp * p[SPIN_R + l], ramp * p[SPIN_T + l]
                 db[speed + l] = gain
-                db[speed + LANES + l] = (lever * nt * er + held * (zi + zo)) * per_j - gain * per_r
+                db[speed + LANES + l] = (held * (zi + zo) - lever * twist) * per_j - gain * per_r
                 db[speed + 2 * LANES + l] = (
                     (lever * (nz * et - nt * ez) + held * (ri + ro)) * per_j + (om + w) * ot - om * base_t
                 )
-                pivoted = held * (ti + to) - lever * nz * er
+                pivoted = held * (ti + to) - lever * (nz * er - nr * ez)
                 db[speed + 3 * LANES + l] = pivoted * per_j - (om + w) * o_r + om * base_r
 
 

@@ -116,9 +116,10 @@ class MovingCage:
     fluid_damping: NewtonSecondPerMetre = key(_AMOUNT, default=0.0)  # its drag across the axis
     orbit_by_diameter: PerSecond = key(_TURNS, default=0.0)  # orbital speed over the diameter of a ball
     balls_at_walls: bool = False  # runs start with each ball at the wall to which its diameter makes it run
-    pocket_shape: PocketShape = key(default=PocketShape.SQUARE)  # square, cylindrical or elongated
+    pocket_shape: PocketShape = key(default=PocketShape.SQUARE)
     pocket_axial_clearance: Metre | None = _SAME["pocket_axial_clearance"]()  # stop to stop
     pocket_axial_offset: Metre = _SAME["pocket_axial_offset"]()  # in space at the start
+    pocket_radial_offset: Metre = key(between(-10.0, 10.0), default=0.0)  # of spherical ones, outward
     hertz_coefficient: NewtonPerMetre1_5 | None = key(positive(1e-3, 1e18), default=None)  # K of N = K d^1.5
     pocket_angles: Annotated[tuple[Radian, ...], ("pocket",)] = key(default=())  # empty: even
     pocket_spacing_scatter: Ratio = _SAME["pocket_spacing_scatter"]()  # of the pitch, uniform
@@ -151,9 +152,20 @@ class MovingCage:
         return self.motion is MotionModel.SPACE
 
     @property
+    def is_wrapped(self) -> bool:
+        """Whether the pockets wrap round their balls."""
+        return self.pocket_shape is PocketShape.SPHERICAL
+
+    @property
+    def is_guided(self) -> bool:
+        """Whether a land or the pockets hold the centre of the cage."""
+        return self.is_wrapped or math.isfinite(self.land_gap)
+
+    @property
     def half_play(self) -> Metre:
-        """c_p, half the clearance of a ball along the circumference, after shape and offset [m]."""
-        return pocket_shape.half_play(self)
+        """c_p, half the clearance of a ball along the circumference, after shape and offsets [m]."""
+        play, out = pocket_shape.half_play(self), self.pocket_radial_offset
+        return math.sqrt((play - out) * (play + out)) if out else play
 
     @property
     def slow_damping(self) -> NewtonSecondPerMetre:
@@ -215,8 +227,10 @@ class MovingCage:
         """Way of the cage outward, and inward, at a ball until the wall of its pocket ends beside it [m].
 
         A wall touches a ball at its equator, at the height of the ball's centre, up to half the pocket's
-        length along the orbit; infinite where no diameter of the cage is given.
+        length along the orbit; infinite where no diameter of the cage is given, or the wall is a sphere.
         """
+        if self.is_wrapped:
+            return math.inf, math.inf
         half = (self.ball_diameter + self.pocket_clearance) / 2.0 + 1.5 * self.ball_diameter_scatter
         outer = math.inf if self.outer_radius is None else self.outer_radius
         inward = math.inf if math.isinf(outer) else pocket_shape.edge_level(outer, half) - self.pitch_radius
@@ -279,6 +293,16 @@ def _reflected(waves: tuple[float, ...]) -> tuple[float, ...]:
 
 
 cage_design.share_rules(MovingCage)
+
+
+@check(MovingCage)
+def _pockets_reach_their_balls(pocket_radial_offset: Metre, cage: MovingCage) -> Faults:
+    """Only a sphere notices the offset, which is less than it allows."""
+    if pocket_radial_offset and not cage.is_wrapped:
+        yield Fault("pocket_radial_offset", "has a meaning only for a spherical pocket")
+    elif pocket_radial_offset and abs(pocket_radial_offset) >= (play := pocket_shape.half_play(cage)):
+        rule = f"must be smaller than half the clearance, {format_quantity(play, 'm')}"
+        yield Fault("pocket_radial_offset", rule, "Farther out the pockets would grip their balls.")
 
 
 @check(MovingCage)
@@ -423,6 +447,7 @@ def moving_cage(solution: Solution, friction: Ratio, ball: BallModel | None = No
             if hertz
             else None,
             # sliding at which a contact as wide as in an impact at the impact speed pivots (Contensou)
+            pocket_radial_offset=solution.clearances.pocket_radial_offset if solution.clearances else 0.0,
             pivot_speed=8.0 / (3.0 * math.pi) * radius * math.hypot(*spin),
             groove_damping=linear.groove_damping if linear else math.inf,
             groove_stiffness=linear.groove_stiffness if linear else 0.0,

@@ -106,7 +106,8 @@ def stored_energy(s, of_balls, a, p, places, l, space):
         across = p[OFFSET + l]
         if space:
             across = s[Z + l] - p[RADIUS + l] * (a[GB + l] * c - a[GA + l] * n) - b[GROOVE + l]
-        depth = pocket_depth(along, across, q[AROUND + l], q[APART + l], p[BESIDE + l])[0]
+        outward = p[WRAPPED + l] * (a[GX + l] * c + a[GY + l] * n) + p[OUTWARD + l]
+        depth = pocket_depth(along, across, outward, q[AROUND + l], q[APART + l], p[BESIDE + l])[0]
         total += (0.5 * p[STIFFNESS + l] + 0.4 * p[HERTZ + l] * math.sqrt(depth)) * depth * depth
     return total
 

@@ -23,6 +23,7 @@ from separatrix.ground.units import (
 from separatrix.study.ball_bearing import ROOM, BallBearing, Material
 from separatrix.study.cage_body import ring_of
 from separatrix.study.cage_design import CageDesign, ClearanceState, Guidance
+from separatrix.study.pocket_shape import PocketShape
 from separatrix.study.study import Operation
 
 NEAR: Kelvin = 10.0
@@ -45,10 +46,11 @@ class Clearances:
     pocket: Metre  # the same as it runs
     pocket_axial_at_rest: Metre | None  # clearance along the axis, of an elongated pocket
     pocket_axial: Metre | None
+    pocket_radial_offset: Metre  # of spherical pockets from their balls, outward; 0 of others
     land_at_rest: Metre | None  # diametral clearance of the land, None without one
     land: Metre | None
     ball_strain: Ratio  # thermal strain from 293 K
-    ring_strain: Ratio | None  # of the ring with the land of the cage
+    ring_strain: Ratio | None  # of the rings, where the cage has a land or spherical pockets
     cage_strain: Ratio
     hoop_strain: Ratio  # of the cage's pitch circle by its rotation
     pitch_radius_growth: Metre  # of the cage, by both
@@ -148,9 +150,13 @@ def running_clearances(
         return clearance + (D + clearance) * strain - D * ball
 
     axial = design.pocket_axial_clearance
-    ring, cage_land, ring_land, land = None, None, None, None
-    if design.guidance is not Guidance.BALL and design.land_clearance is not None:
+    ring, cage_land, ring_land, land, outward = None, None, None, None, 0.0
+    is_wrapped = design.pocket_shape is PocketShape.SPHERICAL
+    has_land = design.guidance is not Guidance.BALL and design.land_clearance is not None
+    if is_wrapped or has_land:
         ring = parts.strain(bearing.ring_material, "[bearing] ring_material")
+        outward = middle * (cage + hoop - ring) if is_wrapped else 0.0
+    if ring is not None and has_land and design.land_clearance is not None:
         cage_land, ring_land, land = parts.land(turning, design.land_clearance, cage, ring)
     found = Clearances(
         temperature=T,
@@ -159,6 +165,7 @@ def running_clearances(
         pocket=pocket(design.pocket_clearance, cage + hoop),
         pocket_axial_at_rest=axial,
         pocket_axial=None if axial is None else pocket(axial, cage - nu * hoop),
+        pocket_radial_offset=outward,
         land_at_rest=design.land_clearance,
         land=land,
         ball_strain=ball,
@@ -272,8 +279,9 @@ def _closed(found: Clearances, cage: str) -> Iterator[InputError]:
     strains = f"{cage}: strain {found.cage_strain + found.hoop_strain:.3g}; balls: {found.ball_strain:.3g}"
     lands = f"{cage}: strain {found.cage_strain:.3g}; ring: {found.ring_strain or 0.0:.3g}"
     cure = "Give a larger clearance at 293 K, or another material."
+    around = found.pocket - 2.0 * abs(found.pocket_radial_offset)  # a ball in a sphere off its place
     for key, rest, runs, why, least in (
-        ("pocket_clearance", found.pocket_at_rest, found.pocket, strains, 0.0),
+        ("pocket_clearance", found.pocket_at_rest, around, strains, 0.0),
         ("pocket_axial_clearance", found.pocket_axial_at_rest, found.pocket_axial, strains, 1e-9),
         ("land_clearance", found.land_at_rest, found.land, lands, 1e-9),
     ):

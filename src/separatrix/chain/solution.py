@@ -120,11 +120,14 @@ class Solution:
         if "_stiffness" not in vars(self) or self.stated_design.ball_cage_stiffness is not None:
             return
         D, play = self.study.bearing.ball_diameter, self.design.pocket_clearance
-        if self.stated_design.pocket_shape is PocketShape.CYLINDRICAL and play > 0.0:
-            curved = 2.0 / D - 2.0 / (D + play)
-            flat, bore = (approach_coefficient(2.0 / D, one, 1.0, 0.0)[0] for one in (2.0 / D, curved))
+        walls = {PocketShape.CYLINDRICAL: "bore", PocketShape.SPHERICAL: "sphere"}
+        name = walls.get(self.stated_design.pocket_shape)
+        if name and play > 0.0:
+            flat, curved = 2.0 / D, 2.0 / D - 2.0 / (D + play)
+            along = curved if name == "sphere" else flat
+            flat, bore = (approach_coefficient(*one, 1.0, 0.0)[0] for one in ((flat, flat), (along, curved)))
             yield (
-                "The stiffness of ball and pocket is that of a flat wall. A bore with a clearance of "
+                f"The stiffness of ball and pocket is that of a flat wall. A {name} with a clearance of "
                 f"{format_quantity(play, 'm', 3)} is {(bore / flat) ** 0.8:.2g} times as stiff by the same "
                 "rule: its restitution factor is lower, and so is its pressure."
             )

@@ -122,9 +122,9 @@ _ELONGATED = Only(
 )
 _ROUND = Only(
     "pocket_shape",
-    (PocketShape.ELONGATED, PocketShape.CYLINDRICAL),
+    (PocketShape.ELONGATED, PocketShape.CYLINDRICAL, PocketShape.SPHERICAL),
     "changes nothing in a square pocket",
-    'Give pocket_shape = "cylindrical" or "elongated", or leave it out.',
+    'Give pocket_shape = "cylindrical", "elongated" or "spherical", or leave it out.',
 )
 
 
@@ -220,7 +220,8 @@ class CageDesign:
     """What the stated clearances of pockets and land are."""
 
     pocket_shape: PocketShape = key(default=PocketShape.SQUARE)
-    """Flat walls, "square"; a bore, "cylindrical"; a slot along the circumference, "elongated"."""
+    """Flat walls, "square"; a bore, "cylindrical"; a slot along the circumference, "elongated"; a wall that
+    wraps its ball, "spherical", with the same clearance along the radius: such pockets guide the cage."""
 
     pocket_axial_clearance: Metre | None = _SAME["pocket_axial_clearance"](
         only=(_ELONGATED,), without="not given: that of the shape"

@@ -14,11 +14,12 @@ from separatrix.ground.units import Metre, Ratio
 
 
 class PocketShape(Spelled):
-    """Wall of a pocket, seen along the radius."""
+    """Wall of a pocket, seen along the radius; a spherical one wraps its ball, and so guides the cage."""
 
     SQUARE = "square"
     CYLINDRICAL = "cylindrical"
     ELONGATED = "elongated"
+    SPHERICAL = "spherical"
 
 
 class Pocket(Protocol):
@@ -45,7 +46,7 @@ def end_half_play(pocket: Pocket) -> Metre:
     """Half the clearance along the axis, and around a pocket's round end [m]; inf if square."""
     if pocket.pocket_shape is PocketShape.SQUARE:
         return math.inf
-    if pocket.pocket_shape is PocketShape.CYLINDRICAL:
+    if pocket.pocket_shape is not PocketShape.ELONGATED:
         return pocket.pocket_clearance / 2.0
     return (pocket.pocket_axial_clearance or 0.0) / 2.0
 
@@ -53,7 +54,7 @@ def end_half_play(pocket: Pocket) -> Metre:
 def half_play(pocket: Pocket) -> Metre:
     r"""Half the clearance of a ball along the circumference, :math:`c_p`, after shape and axial offset [m].
 
-    Square: :math:`c`. Cylindrical bore: :math:`\sqrt{c^2 - z^2}`. Elongated, with round ends:
+    Square: :math:`c`. Bore or sphere: :math:`\sqrt{c^2 - z^2}`. Elongated, with round ends:
     :math:`c - c_a + \sqrt{c_a^2 - z^2}`.
     """
     c, z, c_a = pocket.pocket_clearance / 2.0, pocket.pocket_axial_offset, end_half_play(pocket)

@@ -151,7 +151,8 @@ def cage_facts(answer: Part) -> list[Any]:
     when = "" if state == "as running" else f", {state}"
     guided = "guided by the balls" if guidance == "ball" else f"{guidance}-guided"
     name = (stated.get("material") or {}).get("name")
-    pocket = fill(found, "{half_play} each way along the circumference")
+    radius = " and the radius" * (stated["pocket_shape"]["value"] == "spherical")
+    pocket = fill(found, f"{{half_play}} each way along the circumference{radius}")
     land = "no land: the balls guide the cage"
     if "land_gap" in found:
         least = " at the least" if stated["land_out_of_round"]["value"] else ""

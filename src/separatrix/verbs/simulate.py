@@ -149,6 +149,7 @@ def run_facts(answer: Part) -> Facts:
     cage, damping = answer.cage, None
     land = fill(cage, f"{cage.guidance} land {{land_clearance}} in diameter") if has_land(cage) else "no land"
     axial = fill(cage, ", {axial_half_play} along the axis") if "axial_half_play" in cage else ""
+    axial += " and the radius" * (cage.pocket_shape == "spherical")
     if "given_restitution_factor" in answer:
         damping = show(cage, "race_damping") if "race_damping" in cage else "infinite"
         damping += fill(answer, ", for a restitution factor of {given_restitution_factor}, not the study's")

@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from separatrix.cage.closed_forms import moving_mass
+from separatrix.cage.closed_forms import damped_critical_friction
 from separatrix.cage.disturbance import settings_for
 from separatrix.cage.moving_cage import MovingCage, moving_cage
 from separatrix.cage.outcome import Cause, RunOutcome
@@ -360,7 +360,8 @@ def powers_between(soft: object, stiff: object, share: Ratio, names: Sequence[st
 
 
 HAND: Ratio = 0.42
-"""Critical friction over sqrt(2 k M/Z)/C, within 0.1 for turbopumps (15 bearings, docs/theory/ranking.md)."""
+"""Critical friction over the linear limit, sqrt(2 k M/Z)/C, within 0.1 for turbopumps (15 bearings,
+docs/theory/ranking.md)."""
 
 AMPLE: Ratio = 1.5
 """Safety factor by balls of one state from which free balls are not asked."""
@@ -486,9 +487,8 @@ def _limit(
 
 
 def hand_estimate(cage: MovingCage) -> Ratio:
-    """Critical friction by the closed law, 0.42 sqrt(2 k M/Z)/C with C of a slow push [-]."""
-    stiff = 2.0 * cage.ball_cage_stiffness * moving_mass(cage) / cage.ball_count
-    return HAND * math.sqrt(stiff) / cage.slow_damping
+    """Critical friction by the closed law, 0.42 of the linear limit among dampers of a slow push [-]."""
+    return HAND * damped_critical_friction(cage, cage.slow_damping)
 
 
 def spread(drawn: Sequence[Solution]) -> float:

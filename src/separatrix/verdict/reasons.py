@@ -308,7 +308,8 @@ def drift(cage: MovingCage, ensemble: Ensemble, kick: int) -> str:
         measured = median(ensemble.drift_rate[kick][ensemble.outcome[kick] != RunOutcome.WHIRLS])
         seen += f", and by the linear law it grows e-fold every {_three(1.0 / rate)} s"
         seen += f" ({_three(rate)} 1/s; measured {_three(measured)} 1/s)"
-    return f"The cage has no land and drifts: {seen}."
+    cure = 'If its pockets wrap round their balls, give [cage] pocket_shape = "spherical".'
+    return f"The cage has no land and drifts: {seen}. {cure}"
 
 
 def median(values: Array) -> float:

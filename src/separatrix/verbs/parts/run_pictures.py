@@ -30,10 +30,15 @@ def pocket_boundary(answer: Part) -> Array:
     """Return how far the centre may go in each direction until a pocket touches its ball [m].
 
     Without rotation and lead that is where |r . e_t,j| = c_j: the polygon inside 2 Z lines. A single ball
-    leaves the way along its own radius free: there it is infinite.
+    leaves the way along its own radius free: there it is infinite. Of spheres it is a circle, or the part
+    that many have in common where they are off their balls.
     """
-    across = np.abs(np.sin(AROUND[:, np.newaxis] - array(answer, "pocket_angle")))
-    reach = array(answer, "half_play") / np.maximum(across, 1.0 / NEVER)
+    apart, play = AROUND[:, np.newaxis] - array(answer, "pocket_angle"), array(answer, "half_play")
+    if answer.cage.pocket_shape == "spherical":
+        outward = answer.cage.pocket_radial_offset * np.cos(apart)
+        return np.asarray((np.hypot(outward, play) - outward).min(axis=1))
+    across = np.abs(np.sin(apart))
+    reach = play / np.maximum(across, 1.0 / NEVER)
     return np.where((across < 1.0 / NEVER).all(axis=1), np.inf, reach.min(axis=1))
 
 

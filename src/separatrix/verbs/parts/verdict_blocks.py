@@ -53,8 +53,8 @@ def judged(row: Part) -> Part | None:
 
 
 def drifting(row: Part) -> Part | None:
-    """Return a row without a land whose runs do not all whirl: only these have a drift rate."""
-    if not judged(row) or row.get("land_clearance"):
+    """Return a row that nothing guides and whose runs do not all whirl: only these have a drift rate."""
+    if not judged(row) or not row.drift_rate_law:
         return None
     worst = next(one for one in row.by_kick if one.kick == row.worst_kick)
     return None if worst.whirls == row.runs else row
