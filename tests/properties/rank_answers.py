@@ -47,7 +47,7 @@ def _of_verdict(row: Document, cage: Document) -> Iterator[str]:
         yield f"STABLE with a safety factor of at most {high}"
     if row["verdict"] == "UNSTABLE" and low is not None and low > 1.0:
         yield f"UNSTABLE with a safety factor of at least {low}"
-    if row["verdict"] == "UNSTABLE" and 2 * worst["whirls"] <= row["runs"]:
+    if row["verdict"] == "UNSTABLE" and 2 * worst["whirls"] <= row["runs"] and (low is None or low > 1.0):
         yield f"few whirl: {worst}"
     if row["verdict"] != "STABLE":
         return

@@ -414,12 +414,12 @@ def test_a_cage_without_a_critical_friction_has_its_friction_placed(side, most):
     assert said == f"At the cage's friction, 0.08, as at any other, {most} than half of the runs whirl."
 
 
-def test_a_cage_on_a_land_has_no_drift_rate():
+def test_a_cage_that_is_guided_has_no_drift_rate():
     """It was -0.000003 1/s in a table beside 1925 N on the land."""
     runs = {"by_kick": [Part({"kick": 1.0, "whirls": 0}, {})], "worst_kick": 1.0, "runs": 64}
-    values = candidate().values | runs
+    values = candidate().values | runs | {"drift_rate_law": 0.0}
     assert evidence_column("drift_rate").cell(Part(values | {"drift_rate": -3e-6}, {})).value is None
-    free = Part(values | {"drift_rate": 2.1, "land_clearance": None}, {"drift_rate": "1/s"})
+    free = Part(values | {"drift_rate": 2.1, "drift_rate_law": 2.0}, {"drift_rate": "1/s"})
     assert evidence_column("drift_rate").cell(free).value == 2.1
 
 

@@ -17,7 +17,7 @@ from separatrix.cage.closed_forms import drive_energy
 from separatrix.chain.race_traction import BallTraction, FreeBall, SlipField
 from separatrix.verdict import judgement
 from separatrix.verdict.judgement import ENDS, KickCount, Verdict, judge, wilson_interval
-from separatrix.verdict.ranking import in_a_window
+from separatrix.verdict.ranking import beyond_critical, in_a_window
 from separatrix.verdict.ranking_records import meet, ranks
 from separatrix.verdict.reasons import CageMotion, force_limit
 
@@ -487,3 +487,20 @@ def test_a_cage_that_is_stable_above_its_critical_friction_is_undecided():
     found = {high: in_a_window(calm, safety | {"safety_factor_high": high}) for high in (None, 1.0, 0.45)}
     assert (found[None], found[1.0], found[0.45].verdict) == (calm, calm, UNDECIDED)
     assert "half the runs whirl at a friction of 0.141: it is stable in a window" in found[0.45].reason
+
+
+@pytest.mark.parametrize(
+    ("whirling", "low", "verdict"),
+    [(30, 0.9, UNSTABLE), (30, 1.1, UNDECIDED), (30, None, UNDECIDED), (10, 0.9, UNDECIDED)],
+)
+def test_a_cage_that_neither_runs_nor_factor_call_stable_is_unstable(whirling, low, verdict):
+    """Where surely more than a tenth of the runs whirl, and the safety factor may be below 1."""
+    runs = [int(RunOutcome.WHIRLS)] * whirling + many(64 - whirling)[0]
+    mixed, safety = judge(GUIDED, ensemble([runs])), {"own_critical_friction": 0.14, "safety_factor_low": low}
+    assert mixed.verdict is UNDECIDED
+    found = beyond_critical(mixed, safety)
+    assert found.verdict is verdict
+    if verdict is UNSTABLE:
+        assert found.reason.startswith(
+            "Of 64 runs from 0.1 m/s 34 settle, 30 whirl, and half whirl at a friction of 0.14"
+        )

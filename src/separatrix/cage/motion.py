@@ -5,19 +5,24 @@ space with tilt and axial motion held; the ball is a damper, has one state, or i
 
 A step is classical Runge-Kutta. The speed of a ball of one state is stiff in a slow bearing: there
 :math:`C_f/m_e` is far above every other rate. Its linear part is taken exactly (exponential time differencing
-of order 4, Cox and Matthews 2002), which is classical Runge-Kutta where that rate is small.
+of order 4, Cox and Matthews 2002), which is classical Runge-Kutta where that rate is small. Speed and spins
+of a free ball are held by the slopes of its races (a W-method of order 3, docs/theory/cage.md).
 """
 
 from __future__ import annotations
 
 import math
 
-from separatrix.cage.ball import REST_PLACE, REST_SPEED, race_force, traction
+import numpy as np
+
+from separatrix.cage.ball import REST_PLACE, REST_SPEED, race_force, race_slopes, traction
 from separatrix.cage.frame import cage_rates, place
 from separatrix.cage.land_force import land_forces
 from separatrix.cage.pocket_force import level_depth, level_friction, pocket_depth, pocket_friction
 from separatrix.cage.rows import *
 from separatrix.ground.compiled import inlined
+
+QUARTER, SEVEN_EIGHTHS, TWENTY_THREE_EIGHTHS = (np.float32(x) for x in (1 / 4, 7 / 8, 23 / 8))
 
 
 @inlined
@@ -121,6 +126,70 @@ def ball_rates(s, of_balls, rates_of, a, p, places, ball, space, level):
                 )
                 pivoted = held * (ti + to) - lever * (nz * er - nr * ez)
                 db[speed + 3 * LANES + l] = pivoted * per_j - (om + w) * o_r + om * base_r
+
+
+@inlined
+def hold_spins(s, of_balls, p, places, stiff, space):
+    """Inverse of I - h J/4 for speed and spins of every free ball, into `stiff`; J: slopes by the races.
+
+    The spin along the orbit is alone: its couplings to the others are left out.
+    """
+    speed = (2 if space else 1) * LANES
+    for j in range(places.shape[0]):
+        b, q, x = of_balls[j], places[j], stiff[j]
+        for l in range(LANES):
+            per, v, lever, per_r = ONE / s[RAMP + l], b[speed + l], p[LEVER + l], p[PER_RADIUS + l]
+            dz, dr = b[speed + LANES + l], b[speed + 2 * LANES + l]
+            side = lever * (s[RAMP + l] * p[SPIN_T + l] + b[speed + 3 * LANES + l]) * per
+            v, turn, dr = v * per, (dz + v * per_r) * per, dr * per
+            fs, fz, fr, zs, zz, zr, rs, rz, rr, ti = race_slopes(p, INNER, l, v, turn, dr, side, lever)
+            gs, gz, gr, ys, yz, yr, us, uz, ur, to = race_slopes(p, OUTER, l, v, turn, dr, side, lever)
+            share = QUARTER * p[STEP + l] * q[CAPACITY_SHARE + l] * per
+            by_m, by_j = share * p[PER_OWN_MASS + l], share * p[PER_OWN_INERTIA + l]
+            # slopes by v, at the same turn as the orbit's, by dz and dr
+            f1, f2, f3 = by_m * (fs + gs), by_m * (fz + gz), by_m * (fr + gr)
+            f1 += per_r * f2
+            z1, z2, z3 = by_j * (zs + ys), by_j * (zz + yz), by_j * (zr + yr)
+            z1 += per_r * z2
+            r1, r2, r3 = by_j * (rs + us), by_j * (rz + uz), by_j * (rr + ur)
+            r1 += per_r * r2
+            z1, z2, z3 = z1 - per_r * f1, z2 - per_r * f2, z3 - per_r * f3
+            f1, z2, r3 = ONE + f1, ONE + z2, ONE + r3
+            c1, c2, c3 = z2 * r3 - z3 * r2, z3 * r1 - z1 * r3, z1 * r2 - z2 * r1
+            det = ONE / (f1 * c1 + f2 * c2 + f3 * c3)
+            x[l], x[LANES + l] = det * c1, det * (f3 * r2 - f2 * r3)
+            x[2 * LANES + l], x[3 * LANES + l] = det * (f2 * z3 - f3 * z2), det * c2
+            x[4 * LANES + l], x[5 * LANES + l] = det * (f1 * r3 - f3 * r1), det * (f3 * z1 - f1 * z3)
+            x[6 * LANES + l] = det * c3
+            x[7 * LANES + l], x[8 * LANES + l] = det * (f2 * r1 - f1 * r2), det * (f1 * z2 - f2 * z1)
+            x[9 * LANES + l] = ONE / (ONE + by_j * (ti + to))
+
+
+@inlined
+def held_spins(stage, rates_of, stiff, before, space):
+    """Replace the rates of speed and spins of every free ball in a stage by those held by `hold_spins`."""
+    speed = (2 if space else 1) * LANES
+    c1, c2 = ZERO, ZERO
+    if stage == 1:
+        c1 = -ONE
+    elif stage == 2:
+        c1, c2 = SEVEN_EIGHTHS, -TWENTY_THREE_EIGHTHS
+    elif stage == 3:
+        c1, c2 = QUARTER, -QUARTER
+    for j in range(stiff.shape[0]):
+        db, x, past = rates_of[j, speed:], stiff[j], before[j]
+        for l in range(LANES):
+            m, n, o = l + LANES, l + 2 * LANES, l + 3 * LANES
+            w0, w1 = c1 * past[l] + c2 * past[4 * LANES + l], c1 * past[m] + c2 * past[4 * LANES + m]
+            w2, w3 = c1 * past[n] + c2 * past[4 * LANES + n], c1 * past[o] + c2 * past[4 * LANES + o]
+            g0, g1, g2 = db[l] + w0, db[m] + w1, db[n] + w2
+            db[l] = x[l] * g0 + x[m] * g1 + x[n] * g2 - w0
+            db[m] = x[o] * g0 + x[4 * LANES + l] * g1 + x[5 * LANES + l] * g2 - w1
+            db[n] = x[6 * LANES + l] * g0 + x[7 * LANES + l] * g1 + x[8 * LANES + l] * g2 - w2
+            db[o] = x[9 * LANES + l] * (db[o] + w3) - w3
+        if stage < 2:
+            for e in range(4 * LANES):
+                past[4 * LANES * stage + e] = db[e]
 
 
 @inlined

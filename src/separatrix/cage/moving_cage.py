@@ -116,7 +116,7 @@ class MovingCage:
     fluid_damping: NewtonSecondPerMetre = key(_AMOUNT, default=0.0)  # its drag across the axis
     orbit_by_diameter: PerSecond = key(_TURNS, default=0.0)  # orbital speed over the diameter of a ball
     balls_at_walls: bool = False  # runs start with each ball at the wall to which its diameter makes it run
-    pocket_shape: PocketShape = key(default=PocketShape.SQUARE)
+    pocket_shape: PocketShape = key(default=PocketShape.SQUARE)  # wall of a pocket, seen along the radius
     pocket_axial_clearance: Metre | None = _SAME["pocket_axial_clearance"]()  # stop to stop
     pocket_axial_offset: Metre = _SAME["pocket_axial_offset"]()  # in space at the start
     pocket_radial_offset: Metre = key(between(-10.0, 10.0), default=0.0)  # of spherical ones, outward

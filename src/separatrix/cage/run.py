@@ -12,7 +12,7 @@ from functools import cache
 import numpy as np
 
 from separatrix.cage.frame import place
-from separatrix.cage.motion import held_stage_end, rates, stage_end
+from separatrix.cage.motion import held_spins, held_stage_end, hold_spins, rates, stage_end
 from separatrix.cage.outcome import (
     BY_WALL,
     GROWS,
@@ -327,6 +327,8 @@ def queue(ball: int, space: bool, level: bool = False, real: type = np.float32) 
         waves = of_waves.reshape(-1, HARMONIC_NUMBERS)
         held = np.zeros((HELD_NUMBERS, size if ball == ONE_STATE else 0), real)
         first = np.zeros(held.shape[1], real)
+        held_balls = balls if ball == FREE else 0
+        stiff, before = np.zeros((held_balls, 10 * LANES), real), np.zeros((held_balls, 8 * LANES), real)
         run, look, had = np.full(LANES, -1), np.full(LANES, -1), np.zeros(LANES)
         books = looks, evidence, hits_of, heat_of, numbers, limits
         next_run, live, row, sixth = 0, 0, 0, real(1.0 / 6.0)
@@ -349,6 +351,7 @@ def queue(ball: int, space: bool, level: bool = False, real: type = np.float32) 
                         h[l::LANES] = p[STEP + l]
                         if ball == ONE_STATE:
                             take_decay(held, p, l, states + speed, one)
+                        before[:, l::LANES] = ZERO  # what a run that overflowed has left
                         if space:
                             w[AXIAL_LOW + l] = w[AXIAL_HIGH + l] = s[Z + l]
                 if run[l] >= 0:
@@ -369,6 +372,10 @@ def queue(ball: int, space: bool, level: bool = False, real: type = np.float32) 
                     if waves.shape[0] > 0 and stage == 0:
                         around(t, p, places, waves, turned)
                     rates(t, d, t_balls, d_balls, a, p, places, strips, ball, space, level, lobe_number)
+                    if ball == FREE:
+                        if stage == 0:
+                            hold_spins(t, t_balls, p, places, stiff, space)
+                        held_spins(stage, d_balls, stiff, before, space)
                     if stage == 0:
                         if i == 0:
                             for l in range(LANES):

@@ -256,6 +256,12 @@ def inlined(function: Callable[P, R]) -> Callable[P, R]:
     return _compiled(function, _nrt=False, forceinline=True)
 
 
+def in_python_too(function: Callable[P, R]) -> Callable[P, R]:
+    """A piece of compiled parts that stays plain Python for those that call it there."""
+    found: Callable[P, R] = numba.extending.register_jitable(function)
+    return found
+
+
 def _compiled(function: Callable[P, R], **options: bool | str) -> Callable[P, R]:
     """Compile with numba; the signature stays visible to the type checker."""
     jit = numba.njit(nogil=True, error_model="numpy", **options)  # type: ignore[call-overload]  # _nrt

@@ -144,6 +144,11 @@ class Judgement:
     cone_ratio: Ratio | None = None
     """Median speed at which the lean of the axis goes round, in the fixed frame, over the ball set's."""
 
+    @property
+    def worst(self) -> KickCount:
+        """Where the runs from the worst disturbance end."""
+        return next(one for one in self.by_kick if one.kick == self.worst_kick)
+
 
 def is_calm(outcome: NDArray[np.int64]) -> NDArray[np.bool_]:
     """Whether each run settles, or rolls in its pockets; same shape."""
@@ -336,6 +341,11 @@ def decide(
 def is_mostly(count: int, runs: int) -> bool:
     """Whether more than half of the runs do so, beyond the scatter of so few."""
     return wilson_interval(count, runs)[0] > FEW
+
+
+def whirls_too_often(count: KickCount) -> bool:
+    """Whether more runs whirl than a stable cage may have, beyond their scatter."""
+    return wilson_interval(count.whirls, count.runs)[0] > 1.0 - CLEAR
 
 
 def is_clear(count: int, runs: int) -> bool:

@@ -42,7 +42,13 @@ from separatrix.verdict.critical_friction import (
 )
 from separatrix.verdict.draws import Case, DrawnBearings, drawn_bearings
 from separatrix.verdict.effects import Change, Effect, effects_on
-from separatrix.verdict.judgement import Judgement, Verdict, judge_solution, transmitted_force
+from separatrix.verdict.judgement import (
+    Judgement,
+    Verdict,
+    judge_solution,
+    transmitted_force,
+    whirls_too_often,
+)
 from separatrix.verdict.long_jobs import Load, Runner, scattered
 from separatrix.verdict.long_look import long_look, seen_for_longer
 from separatrix.verdict.ranking_records import (
@@ -60,6 +66,7 @@ from separatrix.verdict.ranking_records import (
     safety_interval,
     same_rank,
 )
+from separatrix.verdict.reasons import ends
 from separatrix.verdict.stability_curve import (
     CriticalFriction,
     RestitutionThreshold,
@@ -433,7 +440,7 @@ def _row(
     if broken := not_finite(judgement):
         return NotFinished(**values, reason=broken)
     judgement = seen_for_longer(judgement, found.get(question.longer) if question.longer else None)
-    values["judgement"] = judgement = in_a_window(judgement, values)
+    values["judgement"] = judgement = beyond_critical(in_a_window(judgement, values), values)
     values["over_inputs"] = found.get(Case(name)) if environment == question.environment else None
     threshold = _threshold(question, found, pocket, friction)
     by_paper = Asked(pocket, friction.mean, True)
@@ -462,6 +469,21 @@ def in_a_window(judgement: Judgement, safety: Mapping[str, Any]) -> Judgement:
     lower = f"half the runs whirl at a friction of {format_number(safety['own_critical_friction'], 3)}"
     reason = f"{judgement.reason} But {lower}: it is stable in a window, which a friction that falls leaves."
     return replace(judgement, verdict=Verdict.UNDECIDED, reason=reason)
+
+
+def beyond_critical(judgement: Judgement, safety: Mapping[str, Any]) -> Judgement:
+    """The judgement; UNSTABLE of an undecided cage that is not STABLE by its runs, nor by its safety factor.
+
+    Surely more than a tenth of the runs whirl, and half of them do at its friction or less.
+    """
+    low, count = safety.get("safety_factor_low"), judgement.worst
+    is_above = low is None or low > 1.0
+    if judgement.verdict is not Verdict.UNDECIDED or is_above or not whirls_too_often(count):
+        return judgement
+    critical = format_number(safety["own_critical_friction"], 3)
+    said = f"Of {count.runs} runs from {count.kick:g} m/s {ends(count)}, and half whirl at a friction of "
+    reason = f"{said}{critical}: surely fewer than nine in ten stay calm."
+    return replace(judgement, verdict=Verdict.UNSTABLE, reason=reason)
 
 
 def _safety(limit: CageLimit | None, friction: MeanFriction, spread: float) -> dict[str, Any]:

@@ -193,14 +193,18 @@ def not_finite(ensemble: Ensemble) -> str:
     return f"In {int(runs.sum())} of {runs.size} runs {CAUSES[Cause.NOT_FINITE]}."
 
 
+def ends(count: KickCount) -> str:
+    """Return how many runs settle, roll, whirl and drift."""
+    parts = {"settle": count.settles, "roll": count.rolls, "whirl": count.whirls, "drift": count.drifts}
+    return ", ".join(f"{n} {word}" for word, n in parts.items() if n)
+
+
 def mixed(ensemble: Ensemble, counts: tuple[KickCount, ...], kick: int, *, is_sure: bool) -> str:
     """Return what the runs from the worst kick do; of unresolved ones also why.
 
     `is_sure` says that their share is neither that of a stable nor that of an unstable cage.
     """
-    count = counts[kick]
-    parts = {"settle": count.settles, "roll": count.rolls, "whirl": count.whirls, "drift": count.drifts}
-    said = ", ".join(f"{n} {word}" for word, n in parts.items() if n)
+    count, said = counts[kick], ends(counts[kick])
     if count.unresolved:
         said = f"{said}{', ' if said else ''}{count.unresolved} are unresolved"
         causes = ensemble.cause[kick][ensemble.outcome[kick] == RunOutcome.UNRESOLVED]
