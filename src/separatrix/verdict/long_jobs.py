@@ -63,8 +63,8 @@ UNDER_WAY = 0.7
 LEAST_LEFT = 0.2
 """Share of its load that a place under way takes at least before it ends."""
 
-FREE, FEWER = 2.9, 0.75
-"""Time of a step among free balls over that among balls of one state: 1.3 to 3.9 (seven bearings); and how
+FREE, FEWER = 3.5, 0.75
+"""Time of a step among free balls over that among balls of one state: 3.1 to 5.6 (seven bearings); and how
 many runs are made, over those of one state: a search begins where that ended."""
 
 KNOWN = 0.1
