@@ -266,19 +266,12 @@ def linked(page, outside, how):
         (place / path.name).symlink_to(path)
 
 
+OF_THE_STUDY = ("study", "answer/rank", "files", "zip", "figure/rank/stability-curve")
+PLACES = ("/", "/file/small/rank.json", *(f"/{one}/small.toml" for one in OF_THE_STUDY))
+
+
 @pytest.mark.parametrize("how", ["folder", "files"])
-@pytest.mark.parametrize(
-    "place",
-    [
-        "/",
-        "/study/small.toml",
-        "/answer/rank/small.toml",
-        "/files/small.toml",
-        "/file/small/rank.json",
-        "/zip/small.toml",
-        "/figure/rank/stability-curve/small.toml",
-    ],
-)
+@pytest.mark.parametrize("place", PLACES)
 def test_answers_outside_are_not_shown(page, outside, how, place):
     """Neither in the list, nor in a page of their own; and the list does not fail over them."""
     missing = page.get(place)

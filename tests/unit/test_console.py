@@ -175,18 +175,11 @@ def test_compilation_is_told_once(capsys):
     assert COMPILING.heard == []
 
 
-def write_half(folder: Path) -> None:
-    """Fail after the first of two files."""
-    with staged(folder) as stage:
-        (stage / "a").write_text("new")
-        raise RuntimeError
-
-
 def test_staged_files_come_all_or_none(tmp_path):
     """A failure half-way leaves the old file and no new one."""
     (tmp_path / "a").write_text("old")
-    with pytest.raises(RuntimeError):
-        write_half(tmp_path)
+    with pytest.raises(RuntimeError), staged(tmp_path) as stage:
+        raise RuntimeError((stage / "a").write_text("new"))  # after the first of two files
     assert [path.name for path in tmp_path.iterdir()] == ["a"]
     assert (tmp_path / "a").read_text() == "old"
     with staged(tmp_path) as stage:
@@ -209,9 +202,8 @@ def test_a_folder_that_stays_empty_is_taken_away(tmp_path):
 def test_the_commands_of_the_readme_exist():
     """Every `separatrix VERB` of README and docs is a verb."""
     texts = [ROOT / "README.md", *(ROOT / "docs").rglob("*.md")]
-    named = {
-        verb for path in texts for verb in re.findall(r"^ *\$? ?separatrix (\w+)", path.read_text(), re.M)
-    }
+    text = "\n".join(path.read_text() for path in texts)
+    named = {*re.findall(r"^ *\$? ?separatrix (\w+)", text, re.MULTILINE)}
     assert named
     assert named <= set(VERBS)
 

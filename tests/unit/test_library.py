@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from commands import changed, refusal, refusal_line, rows_of, written
+from commands import changed, extended, refusal, refusal_line, rows_of, written
 
 import separatrix
 from separatrix import InputError, read_study, resolved
@@ -109,7 +109,7 @@ def test_the_cage_materials_are_those_of_the_paper_and_their_moduli_are_guesses(
 
 
 def test_the_friction_table_is_the_paper_s():
-    """Table 3, every number; a cross is absent, never 0. Its file names its author and what is missing."""
+    """Table 3, every number; a cross is absent, never 0. That of a film in vacuum is a table of its own."""
     table = LIBRARY.record("friction table", "pin-on-disk-77K").content
     rows = [line.split(" | ") for line in PAPER.strip().splitlines()]
     assert list(table.friction) == [row[0] for row in rows]
@@ -125,6 +125,9 @@ def test_the_friction_table_is_the_paper_s():
     text = (DATA / "pin-on-disk-77K.toml").read_text(encoding="utf-8")
     for words in ("table 3", "Typed in", "absent", "1 to 5 m/s", "1 to 14 daN", "table 2", "lost"):
         assert words in text
+    vacuum = LIBRARY.record("friction table", "MoS2 in vacuum").content
+    assert vacuum.rows["MoS2 sputtered dense"]["vacuum, steel"].mean == 0.06
+    assert LIBRARY.names("friction table")[0] == "pin-on-disk-77K"
 
 
 def test_numbers_that_answers_depend_on_have_not_moved():
@@ -141,11 +144,6 @@ def test_numbers_that_answers_depend_on_have_not_moved():
     assert (liquid, vapour) == (pytest.approx(806.5, rel=1e-3), pytest.approx(4.622, rel=3e-3))
 
 
-def datum(value, temperature):
-    """A number that holds at a temperature or over a range."""
-    return Datum(value=value, source="test", confidence="guess", temperature=temperature)
-
-
 WARMEST = "the value at 280 K to 400 K is used"
 CHOSEN = [
     *((None, 3.0, None), (77.0, 2.0, None), (86.9, 2.0, None), (295.0, 1.0, None), (320.0, 3.0, None)),
@@ -155,11 +153,10 @@ CHOSEN = [
 
 
 @pytest.mark.parametrize(("temperature", "value", "words"), CHOSEN)
-def test_the_datum_stated_for_a_temperature_is_chosen_and_none_is_extrapolated_in_silence(
-    temperature, value, words
-):
+def test_the_datum_of_a_temperature_is_chosen_and_no_other_in_silence(temperature, value, words):
     """The narrowest range around it; outside of all, the nearest one and the words that say so."""
-    data = [datum(3.0, (280.0, 400.0)), datum(1.0, (295.0, 295.0)), datum(2.0, (77.0, 77.0))]
+    known = [(3.0, (280.0, 400.0)), (1.0, (295.0, 295.0)), (2.0, (77.0, 77.0))]
+    data = [Datum(value=one, source="test", confidence="guess", temperature=at) for one, at in known]
     choice = choose(data, temperature, "modulus")
     assert choice.datum.value == value
     assert (choice.caution is None) if words is None else (words in choice.caution)
@@ -177,7 +174,7 @@ def test_cage_moduli_are_cautioned_only_where_they_act(tmp_path):
 
 
 def test_records_beside_a_study_are_known_to_it(case):
-    """As a ball material, a film, a cage candidate and a friction table, in SI, with the datum of 77 K."""
+    """In SI, with the datum of 77 K; each is in the result whole, as plain data that can be pickled."""
     study = read_study(case)
     assert study.bearing.ball_material.elastic_modulus == 213e9
     assert study.bearing.ring_material.name == "440C"
@@ -189,32 +186,6 @@ def test_records_beside_a_study_are_known_to_it(case):
     assert armalon.friction["liquid nitrogen, 440C"].source == "Report 5"
     assert ours.friction["air, 440C"] is None
     assert armalon.material.record["library"]["shipped"] is True
-
-
-@pytest.mark.parametrize(
-    "key", ['library = "team/ours.toml"\n', 'library = ["team/ours.toml", "team/../team/ours.toml"]\n']
-)
-def test_a_library_is_named_by_the_study(tmp_path, key):
-    """Also twice: one file is read once. What a base names is found beside the base."""
-    (tmp_path / "team").mkdir()
-    (tmp_path / "variants").mkdir()
-    written(tmp_path, OURS, "team/ours.toml")
-    assert read_study(written(tmp_path, key + STUDY, "case.toml")).film.body.name == "Our film"
-    text = 'extends = "../case.toml"\n[operation]\naxial_load = "150 daN"\n'
-    assert read_study(written(tmp_path, text, "variants/less.toml")).film.body.name == "Our film"
-
-
-def test_a_record_hides_a_shipped_one_only_if_it_says_so(tmp_path, case):
-    """With it the study has the user's numbers; refused without, as EDITS below has it."""
-    case.write_text(STUDY.replace("Our film", "PTFE transfer film"))
-    text = OURS.replace('[film."Our film"]', '[film."PTFE transfer film"]\nreplaces = true')
-    written(tmp_path, text, "materials.toml")
-    assert read_study(case).film.body.elastic_modulus == 2e9
-
-
-def test_a_record_of_the_library_is_in_the_result_whole(case):
-    """Every datum with source, conditions, confidence and checksum, as plain data that can be pickled."""
-    study = read_study(case)
     found = resolved(study)
     json.dumps(found, allow_nan=False)
     assert resolved(pickle.loads(pickle.dumps(study))) == found  # noqa: S301 - our own bytes
@@ -229,6 +200,26 @@ def test_a_record_of_the_library_is_in_the_result_whole(case):
     table = found["ranking"]["table"]
     assert table["conditions"]["slip_speed"]["value"] == [1.0, 4.0]
     assert table["library"] == ours["library"]
+
+
+@pytest.mark.parametrize("key", ['"team/ours.toml"', '["team/ours.toml", "team/../team/ours.toml"]'])
+def test_a_library_is_named_by_the_study(tmp_path, key):
+    """Also twice: one file is read once. What a base names is found beside the base."""
+    (tmp_path / "team").mkdir()
+    (tmp_path / "variants").mkdir()
+    written(tmp_path, OURS, "team/ours.toml")
+    text = f"library = {key}\n{STUDY}"
+    assert read_study(written(tmp_path, text, "case.toml")).film.body.name == "Our film"
+    text = 'extends = "../case.toml"\n[operation]\naxial_load = "150 daN"\n'
+    assert read_study(written(tmp_path, text, "variants/less.toml")).film.body.name == "Our film"
+
+
+def test_a_record_hides_a_shipped_one_only_if_it_says_so(tmp_path, case):
+    """With it the study has the user's numbers; refused without, as EDITS below has it."""
+    case.write_text(STUDY.replace("Our film", "PTFE transfer film"))
+    text = OURS.replace('[film."Our film"]', '[film."PTFE transfer film"]\nreplaces = true')
+    written(tmp_path, text, "materials.toml")
+    assert read_study(case).film.body.elastic_modulus == 2e9
 
 
 @pytest.mark.parametrize(
@@ -274,8 +265,6 @@ def test_the_built_in_states_are_those_of_coolprop():
 
 def test_the_library_on_the_page_is_right_and_the_page_names_every_key():
     """The documentation of the contract is complete."""
-    from pathlib import Path
-
     page = (Path(__file__).parents[2] / "docs" / "reference" / "materials.md").read_text(encoding="utf-8")
     block = page.split("```toml\n")[1].partition("```")[0]
     content = library.joined([library.library_of_text(block, "page")])
@@ -486,12 +475,11 @@ def test_a_designation_fills_what_the_study_does_not_give(tmp_path):
     (note,) = (note for note in study.notes if "608" in note)
     assert "pitch_diameter 15 mm of 608 is a guess" in note
     assert study_again(study.content) == study
-    text = 'extends = "ball-218"\n[bearing]\ndesignation = "7008C"\ninner_conformity = 0.53\n'
-    text += "outer_conformity = 0.53\n"
-    pair = read_study(written(tmp_path, text, "pair.toml"))
-    (note,) = (note for note in pair.notes if "7008C" in note)  # a screen shows three notes
-    guesses = "ball_count 17, ball_diameter 7.938 mm, pitch_diameter 54 mm of 7008C are guesses"
-    assert guesses in note
+    text = '[bearing]\ndesignation = "7008C"\ninner_conformity = 0.53\nouter_conformity = 0.53\n'
+    (note,) = (
+        note for note in extended(tmp_path, text, "ball-218").notes if "7008C" in note
+    )  # a screen shows three notes
+    assert "ball_count 17, ball_diameter 7.938 mm, pitch_diameter 54 mm of 7008C are guesses" in note
 
 
 def test_keys_of_the_study_override_the_catalogue(tmp_path):
@@ -563,11 +551,7 @@ def test_wear_that_neither_study_nor_library_has_is_refused_with_the_test():
         wear_rates(bare, WearRates(bare_friction=0.3), None)
     assert [one.path for one in error.value.problems] == ["[wear] film_wear", "[wear] cage_wear"]
     assert "PTFE transfer film" in str(error.value)
-
-
-def test_a_cage_of_the_library_brings_its_wear():
-    """Unfilled PEEK, by the candidate or by the cage."""
-    study = separatrix.read_study("momentum-wheel")
+    # unfilled PEEK brings its own
     known = {"name": "PEEK", "material": LIBRARY.material("cage material", "PEEK")}
     peek = replace(study.ranking.candidates[0], **known)
     rates = wear_rates(study, WearRates(bare_friction=0.3), peek)
@@ -575,18 +559,9 @@ def test_a_cage_of_the_library_brings_its_wear():
     assert rates["wear.cage_wear"].range is None
 
 
-def test_friction_of_a_film_in_vacuum_is_a_table_of_its_own():
-    """With its source; what is published without a number is absent."""
-    table = LIBRARY.record("friction table", "MoS2 in vacuum").content
-    assert table.rows["MoS2 sputtered dense"]["vacuum, steel"].mean == 0.06
-    assert LIBRARY.names("friction table")[0] == "pin-on-disk-77K"
-
-
-@pytest.mark.parametrize(
-    "kind", ["bearing material", "film", "cage material", "friction table", "bearing", "study"]
-)
-def test_the_page_on_study_files_lists_every_shipped_name(kind):
+def test_the_page_on_study_files_lists_every_shipped_name():
     """Of the kinds that it lists name by name."""
     page = (Path(__file__).parents[2] / "docs" / "reference" / "study-file.md").read_text(encoding="utf-8")
-    names = shipped_studies() if kind == "study" else LIBRARY.names(kind)
+    kinds = ("bearing material", "film", "cage material", "friction table", "bearing")
+    names = [*shipped_studies(), *(name for kind in kinds for name in LIBRARY.names(kind))]
     assert [one for one in names if f"`{one}`" not in page] == []

@@ -2,6 +2,7 @@
 
 import json
 import re
+from importlib.resources import files
 
 import pytest
 from commands import extended, log, written
@@ -53,8 +54,6 @@ def restitution():
 
 def changed(tmp_path, name, *edits, more=""):
     """A shipped study with other text in it."""
-    from importlib.resources import files
-
     text = files("separatrix.examples").joinpath(f"{name}.toml").read_text(encoding="utf-8")
     for old, new in edits:
         assert old in text
@@ -193,25 +192,22 @@ def test_a_life_that_follows_no_input_asks_for_no_measurement(correlation, words
     assert said.startswith(words) if words else said == ""
 
 
-@pytest.mark.parametrize(
-    ("test", "mission", "differs"), [(0.9, 0.5, True), (0.5, 0.9, True), (0.9, 0.8, False)]
-)
-def test_an_accelerated_test_of_another_cage_is_not_scaled(test, mission, differs):
+@pytest.mark.parametrize(("test", "use", "differs"), [(0.9, 0.5, True), (0.5, 0.9, True), (0.9, 0.8, False)])
+def test_an_accelerated_test_of_another_cage_is_not_scaled(test, use, differs):
     """Less stable or more: it wears otherwise."""
     names = ("inner_speed", "critical_friction", "film_time", "pocket_time")
     run = Part({**dict.fromkeys(names, 1.0), "probability_stable": test}, {"inner_speed": "rad/s"})
-    found = Part({"accelerated": run, "course": [Part({"probability_stable": mission}, {})]}, {})
+    found = Part({"accelerated": run, "course": [Part({"probability_stable": use}, {})]}, {})
     assert ("do not scale" in " ".join(life.faster(found))) is differs
 
 
 @pytest.mark.parametrize("speed", ["3000 rpm", "10 rpm"])
 def test_check_names_the_verbs_that_take_long(tmp_path, speed):
     """Of a dry wheel, and of one as slow as a gimbal; nothing is compiled."""
-    path = tmp_path / "slow.toml"
-    path.write_text(f'extends = "dry-reaction-wheel"\n[operation]\ninner_speed = "{speed}"\n')
+    study = extended(tmp_path, f'[operation]\ninner_speed = "{speed}"\n', "dry-reaction-wheel")
     compiled = []
     COMPILING.heard.append(lambda: compiled.append(1))
-    found = answer("check", read_study(path))
+    found = answer("check", study)
     COMPILING.heard.pop()
     times = {one.verb: one.one_core_time for one in found.long_verbs}
     assert list(times) == ["stability", "rank"]
@@ -234,9 +230,7 @@ def test_a_fluid_that_no_environment_has_is_in_its_refusal(tmp_path):
 def test_a_pair_without_external_load_is_not_pressed_by_one(tmp_path, load, is_pressed):
     """Both of its bearings have the preload."""
     pair = f'[operation]\naxial_load = "{load}"\npreload = "150 N"\narrangement = "back-to-back"'
-    path = tmp_path / "pair.toml"
-    path.write_text(f'extends = "momentum-wheel"\n{pair}\n')
-    page = verb_named("bearing").page(answer("bearing", read_study(path)))
+    page = verb_named("bearing").page(answer("bearing", extended(tmp_path, pair, "momentum-wheel")))
     (said,) = (one for one in text(page).splitlines() if "This bearing" in one)
     assert said.endswith(": the external load presses it") is is_pressed
 
@@ -260,17 +254,15 @@ def test_a_verb_that_lacks_a_section_is_refused_for_that():
     assert lead.startswith("The study is valid. It has no [cage] and no [ranking]. `restitution`,")
 
 
-@pytest.mark.parametrize(
-    ("clearance", "first"), [('"1 mm"', "after"), ('"0.6 mm"', "together with"), ('"0.2 mm"', "before")]
-)
-def test_what_a_cage_reaches_first(tmp_path, clearance, first):
+@pytest.mark.parametrize(("gap", "first"), [(1, "after"), (0.6, "together with"), (0.2, "before")])
+def test_what_a_cage_reaches_first(tmp_path, gap, first):
     """The radial gap of the land against half the clearance of a pocket."""
-    study = changed(tmp_path, SHIPPED, ('land_clearance = "1 mm"', f"land_clearance = {clearance}"))
+    study = changed(tmp_path, SHIPPED, ('land_clearance = "1 mm"', f'land_clearance = "{gap} mm"'))
     assert f"reached {first} the pockets" in text(verb_named("check").page(answer("check", study)))
 
 
 def test_films_have_bare_races_apart_and_the_star_at_the_study(restitution):
-    """A logarithmic axis has no zero."""
+    """A logarithmic axis has no zero. Bare races have no other films: no empty picture, but the reason."""
     pictures = [one for one in verb_named("restitution").page(restitution).blocks if hasattr(one, "figure")]
     (panel,) = pictures[0].figure().panels
     traces = [one for one in panel.marks if isinstance(one, Trace)]
@@ -278,10 +270,6 @@ def test_films_have_bare_races_apart_and_the_star_at_the_study(restitution):
     assert all(min(line.x) > 0.0 for line in lines)
     assert panel.x.ticks[0][1] == "bare"
     assert (star.x, star.y) == ([5e-7], [restitution.restitution_factor])
-
-
-def test_bare_races_have_no_other_films(restitution):
-    """No empty picture, but the reason."""
     none = {"lubrication": None, "lubrication_reason": "The study names no film material."}
     found = part_of({**restitution.values, **none, "units": restitution.units})
     blocks = verb_named("restitution").page(found).blocks
@@ -466,8 +454,10 @@ def test_the_headline_names_who_has_another_verdict_with_the_inputs_drawn():
     assert said == "That is at the means of the uncertain inputs; with them drawn: UNDECIDED Phenolic."
 
 
-def test_the_headline_explains_a_critical_friction_of_zero():
-    """A safety factor of 0.00 stood beside a P(stable) of 0.84, without a word."""
+def test_the_headline_explains_a_critical_friction_of_zero_and_one_that_was_not_found():
+    """A safety factor of 0.00 stood there without a word; the highest that was searched is named as that."""
+    said = verdict_sentences([candidate(critical=(None, 1.0, None))], "air")
+    assert "Safety factor > 3.57: at no friction up to 1.000 half the runs whirl, the pockets" in said
     row = candidate(critical=(0.0, 0.0, 0.0))
     said = verdict_sentences([row], "air")
     words = "half the runs whirl even without friction in the pockets, which do not drive them"
@@ -481,12 +471,6 @@ def test_the_headline_explains_a_critical_friction_of_zero():
     assert "and lowers the critical friction" in land  # it read that the land does not decide
 
 
-def test_a_critical_friction_that_was_not_found_is_no_friction_of_a_whirl():
-    """The highest that was searched is named as that."""
-    said = verdict_sentences([candidate(critical=(None, 1.0, None))], "air")
-    assert "Safety factor > 3.57: at no friction up to 1.000 half the runs whirl, the pockets" in said
-
-
 @pytest.mark.parametrize(("motion", "ball"), [("plane", "auto"), ("space", "auto"), ("space", "damper")])
 def test_the_paper_differs_by_the_motion_too(motion, ball):
     """In space it is the tilt that may decide, and not the damping alone; the plane has none."""
@@ -498,7 +482,7 @@ def test_the_paper_differs_by_the_motion_too(motion, ball):
     assert ("the cage also tilts" in told) is (motion == "space")
 
 
-def test_a_map_says_what_is_next_to_the_study_and_where_it_changes():
+def test_a_map_says_what_is_next_to_the_study_where_it_changes_and_what_each_point_has():
     """The nearest point with its runs, and both ends of a change in its column."""
     words = nearest_words(mapped())
     place = "film thickness 1 \N{MICRO SIGN}m, race friction 0.3"
@@ -508,6 +492,12 @@ def test_a_map_says_what_is_next_to_the_study_and_where_it_changes():
     assert [*unchanged(mapped(changes=[]))] == []
     calm = [one.values | {"probability_high": 0.3} for one in mapped().points]
     assert [*unchanged(mapped(changes=[], points=calm))] == [("Whirls nowhere", "at 1 \N{MICRO SIGN}m")]
+    # values and reason stand at each cell, upward in y; what has no share is a gap, a refusal hatched
+    cells, hatched = map_figure(mapped()).panels[0].marks[:2]
+    assert cells.values == [[0.0, None], [1.0, None]]
+    assert cells.hover[1][0] == f"{place}: UNSTABLE; share that whirls 1 (0.7 to 1), 6 runs"
+    assert cells.hover[0][1].endswith("too thin")
+    assert hatched.where == [[False, True], [False, False]]
 
 
 def test_a_map_states_why_points_at_which_nothing_whirls_are_undecided():
@@ -516,16 +506,6 @@ def test_a_map_states_why_points_at_which_nothing_whirls_are_undecided():
     rows = (*off, ("UNDECIDED", 3, "No clear answer"), ("STABLE", 0, "All settle"))
     points = [Part(dict(zip(names, row, strict=True)), {}) for row in rows]
     assert undecided(Part({"points": points}, {})) == ["0.3 mm off (And 1 more with other numbers.)"]
-
-
-def test_every_point_of_a_map_has_its_values_to_point_at():
-    """Values and reason stand at each cell, upward in y; what has no share is a gap, a refusal hatched."""
-    cells, hatched = map_figure(mapped()).panels[0].marks[:2]
-    assert cells.values == [[0.0, None], [1.0, None]]
-    there = "film thickness 1 \N{MICRO SIGN}m, race friction 0.3: UNSTABLE; "
-    assert cells.hover[1][0] == f"{there}share that whirls 1 (0.7 to 1), 6 runs"
-    assert cells.hover[0][1].endswith("too thin")
-    assert hatched.where == [[False, True], [False, False]]
 
 
 def swept(count=3, **more):
@@ -544,13 +524,9 @@ def swept(count=3, **more):
     )
 
 
-def test_a_long_sweep_is_cut_to_its_worst_cases():
-    """A workbook has all of them."""
+def test_a_long_sweep_is_cut_to_its_worst_cases_and_cases_that_are_alike_have_none():
+    """A workbook has all of them. The number that all share is stated, and no line is drawn."""
     assert [row.case for row in case_table(swept(50)).rows] == [49 - i for i in range(SHOWN)]
-
-
-def test_cases_that_are_alike_have_no_worst():
-    """Then the number that they share is stated, and no line is drawn."""
     worst = {"case": 0, "quantity": "restitution_factor", "compared": 3, "alike": 3}
     assert worst_words(swept(worst=worst)).startswith("No case is the worst: all 3 with an answer have the ")
     alike, other = (len(envelope_figure(one).panels[0].marks) for one in (swept(worst=worst), swept()))
@@ -720,34 +696,25 @@ def test_what_cannot_be_compared_is_refused(tmp_path):
 
 
 # --- logs ---------------------------------------------------------------------------------------
-@pytest.fixture(scope="module")
-def tests_of_logs(tmp_path_factory):
-    """Return the document of two logs: running-in from 0.2, then noise about a friction."""
-    folder = tmp_path_factory.mktemp("logs")
+def test_each_test_is_drawn_with_its_cut_and_its_steady_part(tmp_path):
+    """The ends of its steady part, and the mean over it; logs that were read alike are told once."""
     for seed, name in enumerate(("a.csv", "b.csv")):
-        log(folder / name, 0.08, seed)
-    found = tribometer.compute(tribometer.Options(files=(folder,)))
-    return json.loads(json.dumps(found, allow_nan=False))
-
-
-def test_each_test_is_drawn_with_its_cut_and_its_steady_part(tests_of_logs):
-    """The ends of its steady part, and the mean over it."""
-    page = tribometer.page(part_of(tests_of_logs))
+        log(tmp_path / name, 0.08, seed)
+    found = tribometer.compute(tribometer.Options(files=(tmp_path,)))
+    found = json.loads(json.dumps(found, allow_nan=False))
+    page = tribometer.page(part_of(found))
     pictures = [one for one in page.blocks if isinstance(one, Picture)]
     assert [one.name for one in pictures] == ["a.csv", "b.csv"]
-    test = tests_of_logs["tests"][0]
+    test = found["tests"][0]
     course, *_ = pictures[0].figure().panels
     ends = [test["run_in_end"], test["steady_end"]]
     assert [one.at for one in course.marks if isinstance(one, Across)] == ends
     (mean,) = [one for one in course.marks if getattr(one, "name", "").startswith("steady mean")]
     assert [*mean.x] == ends
     assert len(test["course"]["along"]) == 600
-
-
-def test_logs_that_were_read_alike_are_told_once(tests_of_logs):
-    """With the columns that were taken, in a page that fits a screen; places along a test in minutes."""
-    words = text(tribometer.page(part_of(tests_of_logs)))
+    # with the columns that were taken, in a page that fits a screen; places along a test in minutes
+    words = text(page)
     assert words.count('"friction coefficient"') == 1
     assert "a.csv and 1 more: plain table (" in words
-    assert "12.49" in text(tribometer.page(part_of(tests_of_logs)), Level.FULL)  # the last row, at 749.5 s
+    assert "12.49" in text(page, Level.FULL)  # the last row, at 749.5 s
     assert words.count("\n") < 45

@@ -3,7 +3,6 @@
 import contextlib
 import io
 import json
-import os
 import shutil
 from dataclasses import replace
 from pathlib import Path
@@ -46,40 +45,25 @@ ASKED = [
 ]
 
 
-def home(folder: Path) -> Path:
-    """Write studies that take what they need from other files, above them, elsewhere, and of other kinds."""
-    own, far = folder / "own", folder / "far" / "shared"
+@pytest.fixture(scope="module")
+def stored(tmp_path_factory):
+    """Answers by what was asked; their files, above them, elsewhere and of other kinds, are gone."""
+    folder = tmp_path_factory.mktemp("made")
+    own, far, answers = folder / "own", folder / "far" / "shared", {}
     (own / "sub").mkdir(parents=True)
     far.mkdir(parents=True)
     (far / "mine.toml").write_text(LIBRARY)
     (own / "base.toml").write_bytes((BASE + FEW).replace("\n", "\r\n").encode())
     (own / "sub" / "variant.toml").write_text(f"extends = '../base.toml'\nlibrary = '{far / 'mine.toml'}'\n")
-    (own / "tested.toml").write_text(
-        "extends = 'cryogenic-turbopump'\n[ranking]\nfriction = 'friction.toml'\n"
-    )
+    tested = "extends = 'cryogenic-turbopump'\n[ranking]\nfriction = 'friction.toml'\n"
+    (own / "tested.toml").write_text(tested)
     (own / "friction.toml").write_text(FRICTION)
     (own / "cases.csv").write_text(CASES)
-    return own
-
-
-def told(*arguments: str) -> str:
-    """Return what a command prints."""
-    out = io.StringIO()
-    with contextlib.redirect_stdout(out):
-        assert main([*arguments, "--quiet"]) == 0
-    return out.getvalue()
-
-
-@pytest.fixture(scope="module")
-def stored(tmp_path_factory):
-    """Answers by what was asked; the files that they were made from are gone."""
-    folder = tmp_path_factory.mktemp("made")
-    before = Path.cwd()
-    os.chdir(home(folder))
-    try:
-        answers = {asked: json.loads(told(*asked, "--json", "--jobs", "2")) for asked in ASKED}
-    finally:
-        os.chdir(before)
+    with contextlib.chdir(own):
+        for asked in ASKED:
+            with contextlib.redirect_stdout(io.StringIO()) as out:
+                assert main([*asked, "--json", "--jobs", "2", "--quiet"]) == 0
+            answers[asked] = json.loads(out.getvalue())
     shutil.rmtree(folder / "own")
     shutil.rmtree(folder / "far")
     return answers

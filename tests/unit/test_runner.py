@@ -1,5 +1,6 @@
 """The runner of long jobs: order, threads, interrupts, and what the ledger keeps of a killed one."""
 
+import contextlib
 import json
 import math
 import os
@@ -243,10 +244,8 @@ def test_a_damaged_piece_is_run_again(tmp_path, damaged):
     ledger = Ledger(tmp_path / NAME)
     first = Runner(ledger=ledger).ensemble(CAGE, QUICK, **asked)
     ledger.close()
-    connection = sqlite3.connect(tmp_path / NAME)
-    with connection:
+    with contextlib.closing(sqlite3.connect(tmp_path / NAME)) as connection, connection:
         connection.execute("UPDATE piece SET found = ?", (damaged,))
-    connection.close()
     ledger = Ledger(tmp_path / NAME)
     again = Runner(ledger=ledger).ensemble(CAGE, QUICK, **asked)
     assert ledger.taken == 0
@@ -263,12 +262,10 @@ def test_pieces_are_bound_to_their_keys_and_written_at_once(tmp_path):
         ledger.put(key, found)
     other = Ledger(tmp_path / NAME)
     assert [other.get(key) for key in keys] == [b"one", b"two"]
-    connection = sqlite3.connect(tmp_path / NAME)
-    rows = dict(connection.execute("SELECT key, found FROM piece"))
-    with connection:
+    with contextlib.closing(sqlite3.connect(tmp_path / NAME)) as connection, connection:
+        rows = dict(connection.execute("SELECT key, found FROM piece"))
         connection.execute("UPDATE piece SET found = ? WHERE key = ?", (rows[keys[1]], keys[0]))
         connection.execute("UPDATE piece SET found = ? WHERE key = ?", (rows[keys[1]][:-1] + b"x", keys[1]))
-    connection.close()
     assert [other.get(key) for key in keys] == [None, None]
     for one in (ledger, other):
         one.close()
@@ -322,14 +319,9 @@ FEW = replace(WHEEL.stability, runs=4, duration=0.005, restitution_factors=(0.2,
 @pytest.fixture(scope="module")
 def two():
     """Two worker processes; another Dask on this machine may have port 8787."""
-    with distributed.LocalCluster(
-        n_workers=2,
-        threads_per_worker=1,
-        processes=True,
-        dashboard_address=None,
-        silence_logs=50,
-        scheduler_kwargs={"dashboard_address": "127.0.0.1:0"},
-    ) as found:
+    settings = {"n_workers": 2, "threads_per_worker": 1, "processes": True, "silence_logs": 50}
+    port = {"dashboard_address": "127.0.0.1:0"}
+    with distributed.LocalCluster(dashboard_address=None, scheduler_kwargs=port, **settings) as found:
         yield found
 
 

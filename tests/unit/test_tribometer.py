@@ -65,14 +65,12 @@ def test_logs_become_a_friction_file_with_a_page_for_each(logs, capsys):
     """Text, exit status, files; the tests are those of the logs under the conditions of the map."""
     assert main([*BOTH, "--out", "friction.toml"]) == 0
     text = capsys.readouterr().out
-    assert "friction.toml" in text
-    assert "Armalon" in text
+    assert [word in text for word in ("friction.toml", "Armalon")] == [True, True]
     plots = [f"friction-plots/{n}.csv.{s}" for n in "ab" for s in ("png", "svg")]
     assert names(logs) == sorted(["a.csv", "b.csv", "map.toml", "friction.toml", *plots])
     first, second = read_friction(logs / "friction.toml")
     assert (first.source, first.slip_speed, second.slip_speed) == ("a.csv", (2.0, 2.0), (4.0, 4.0))
-    # 20 N on a pin of 5 mm
-    assert first.pressure[0] == pytest.approx(20.0 / (np.pi * 2.5e-3**2))
+    assert first.pressure[0] == pytest.approx(20.0 / (np.pi * 2.5e-3**2))  # 20 N on a pin of 5 mm
     # the noise of 0.004 over a thousand rows leaves 0.0002; what is left of running-in is less than that
     assert [first.friction, second.friction] == pytest.approx([0.08, 0.09], abs=1e-3)
     assert first.standard_error < 1e-3
@@ -82,19 +80,17 @@ def test_logs_become_a_friction_file_with_a_page_for_each(logs, capsys):
 def test_python_and_json_answer_alike_and_nothing_is_written(logs, capsys):
     """The same numbers, tests as a friction file keeps them, progress up to its total; no new file."""
     before, steps = names(logs), []
-    found = separatrix.tribometer(
-        ["a.csv", "b.csv"], column_map="map.toml", progress=lambda *at: steps.append(at)
-    )
+    given = {"column_map": "map.toml", "progress": lambda *at: steps.append(at)}
+    found = separatrix.tribometer(["a.csv", "b.csv"], **given)
     assert main(BOTH) == 0
     assert capsys.readouterr().out == found.summary()
-    assert main([*BOTH, "--json"]) == 0
-    document = json.loads(capsys.readouterr().out)
-    assert document == found.document()
-    assert [file["source"] for file in document["files"]] == ["a.csv", "b.csv"]
-    assert document["tests"][0]["friction_low"] < 0.08 < document["tests"][0]["friction_high"]
-    assert document["fits"][0]["scatter_source"] == "its own tests, drawn towards the assumed 9 %"
-    assert document["friction_file"] is None
-    assert missing("tribometer", document) == set()
+    answer = document(capsys, *BOTH)
+    assert answer == found.document()
+    assert [file["source"] for file in answer["files"]] == ["a.csv", "b.csv"]
+    assert answer["tests"][0]["friction_low"] < 0.08 < answer["tests"][0]["friction_high"]
+    assert answer["fits"][0]["scatter_source"] == "its own tests, drawn towards the assumed 9 %"
+    assert answer["friction_file"] is None
+    assert missing("tribometer", answer) == set()
     assert (names(logs), steps[-1]) == (before, (1000, 1000))
     assert [test.friction for test in found.friction_tests] == [test.friction for test in found.tests]
     assert found.fit.of("Armalon", "liquid nitrogen, 440C").at().mean == pytest.approx(0.085, abs=1e-3)
@@ -164,11 +160,9 @@ def test_an_interrupt_leaves_no_friction_file(logs):
     wait_until((logs / "f-plots").exists)  # the folders are made before the first log is read
     os.kill(process.pid, signal.SIGINT)
     out, error = process.communicate(timeout=PATIENCE)
-    assert process.returncode == 130
-    assert out == ""
+    assert (process.returncode, out) == (130, "")
     assert error == "separatrix: interrupted; no friction file was written.\n"
-    assert not (logs / "f.toml").exists()
-    assert not (logs / "f-plots").exists()
+    assert not [*logs.glob("f[.-]*")]  # neither f.toml nor f-plots
 
 
 def test_names_of_pages_are_names_of_files():
@@ -190,45 +184,38 @@ def test_a_pattern_that_fits_no_file_is_said_and_with_out_refused(logs, capsys, 
     assert len(notes) == 1
     (logs / "a.csv").write_text("no log")  # the map is refused before any log is read
     assert main([*command, "--out", "friction.toml"]) == 2
-    line = f"separatrix: {rule} Mend it, or leave it out of this column map.\n"
-    assert capsys.readouterr().err == line
+    said = capsys.readouterr().err
+    assert said == f"separatrix: {rule} Mend it, or leave it out of this column map.\n"
     assert names(logs) == ["a.csv", "b.csv", "map.toml"]
 
 
 def test_a_pattern_that_fits_one_of_the_files_is_not_complained_of(logs, capsys):
     """By its name or by its folder too; one that fits none of many names three of them."""
-    assert main([*BOTH, "--json"]) == 0
-    assert json.loads(capsys.readouterr().out)["notes"] == []
+    assert document(capsys, *BOTH)["notes"] == []
     chosen = column_map({"files": {"one/*.csv": {"sample": "A"}, "x*": {"sample": "B"}}}, "map.toml")
     (wrong,) = chosen.unused([logs / "one" / f"{n}.csv" for n in range(5)])
     assert 'map.toml: [files."x*"] must fit a file that is named; got 0.csv, 1.csv, 2.csv and 2' in str(wrong)
 
 
-@pytest.fixture
-def folder(tmp_path):
-    """A folder with two logs and a note."""
-    log(tmp_path / "a2.csv", rows=400)
-    log(tmp_path / "a10.csv", 0.12, rows=400)
-    (tmp_path / "notes.md").write_text("none")
-    return tmp_path
-
-
-def test_logs_of_one_name_in_two_folders_are_two_tests_each_with_its_own_conditions(folder):
+def test_logs_of_one_name_in_two_folders_are_two_tests_each_with_its_own_conditions(tmp_path):
     """The end of running-in that the map states for one is not that of the other; the call goes before it."""
-    for place, name in (("one", "a2.csv"), ("two", "a10.csv")):
-        (folder / place).mkdir()
-        (folder / name).rename(folder / place / "a.csv")
+    logs = [tmp_path / "one", tmp_path / "two"]
+    for place, friction in zip(logs, (0.1, 0.12), strict=True):
+        place.mkdir()
+        log(place / "a.csv", friction, rows=400)
     stated = column_map({"files": {"one/*.csv": {"run_in_end": "60 s"}}})
-    logs = [folder / "one", folder / "two"]
     first, second = separatrix.tribometer(logs, column_map=stated).tests
     assert (first.run_in_method, second.run_in_method == "given") == ("given", False)
     found = separatrix.tribometer(logs, column_map=stated, run_in="90 s").tests
     assert [test.run_in_end for test in found] == [90.0, 90.0]
 
 
-def test_its_tables_and_pages_are_those_of_a_test(folder):
+def test_its_tables_and_pages_are_those_of_a_test(tmp_path):
     """One row for each test, in the order of the numbers in their names; its picture by its source."""
-    found = separatrix.tribometer(folder)
+    log(tmp_path / "a2.csv", rows=400)
+    log(tmp_path / "a10.csv", 0.12, rows=400)
+    (tmp_path / "notes.md").write_text("none")
+    found = separatrix.tribometer(tmp_path)
     table = found.to_dataframe()
     assert [*table["source"]] == ["a2.csv", "a10.csv"]
     assert [*table["friction"]] == [test.friction for test in found.tests]
@@ -316,8 +303,7 @@ def test_a_study_takes_the_tests_at_its_temperature_and_says_how_many_it_leaves_
     warm = SMALL.split("[[test]]")[1].replace("0.08", '0.3\ntemperature = "295 K"')
     (candidate, _) = read_study(study(tmp_path, f"{cold}\n[[test]]{warm}")).ranking.candidates
     friction = candidate.friction["liquid nitrogen, 440C"]
-    assert friction.mean == pytest.approx(0.08, rel=1e-12)  # rounding of exp and log
-    assert friction.count == 1
+    assert (friction.mean, friction.count) == (pytest.approx(0.08, rel=1e-12), 1)  # rounding of exp and log
     assert "1 of 2 tests, at other temperatures, left out" in friction.source
 
 
@@ -325,11 +311,8 @@ def test_a_study_takes_the_tests_at_its_temperature_and_says_how_many_it_leaves_
 @pytest.mark.parametrize("verb", [["stability"], ["simulate"], ["rank"], ["sensitivity", "--samples", "64"]])
 def test_every_verb_has_the_same_friction_of_the_first_candidate(elsewhere, tmp_path, capsys, verb):
     """Tests at 1 and 5 m/s: that at 5, not their mean, in the cage that stands in its answer."""
-    first, second = (f'0.08\nslip_speed = "{v} m/s"' for v in (1, 5))
-    one = SMALL.split("[[test]]")[1]
-    text = f"[[test]]{one.replace('0.08', first)}" + 2 * f"[[test]]{one.replace('0.08', second)}".replace(
-        "0.08", "0.12"
-    )
+    first, second = (f'{friction}\nslip_speed = "{v} m/s"' for friction, v in ((0.08, 1), (0.12, 5)))
+    text = "".join(f"\n{GOOD.replace('0.08', one)}" for one in (first, second, second))
     few = '[stability]\nkicks = ["0.5 m/s"]\nruns = 2\nduration = "10 ms"\nrestitution_factors = [0.5]'
     path = study(tmp_path, text, few)
     answer = document(capsys, verb[0], str(path), *verb[1:], "--jobs", "1")
@@ -357,8 +340,7 @@ def test_the_shipped_study_rubs_at_25_metres_a_second():
     solution = solve(read_study("cryogenic-turbopump"))
     found = solution.pocket
     # 67.4 N are of half the mass of the ring, which an impact feels; the whole mass would press with 84 N
-    thin_ring = 0.5 * solution.inertia.mass
-    assert solution.felt_mass == pytest.approx(thin_ring, rel=1e-12)  # rounding
+    assert solution.felt_mass == pytest.approx(0.5 * solution.inertia.mass, rel=1e-12)  # rounding
     # regressions to the digits of the numbers
     assert found.slip_speed == pytest.approx(25.124, rel=1e-4)
     assert found.pressure == pytest.approx(157.289e6, rel=1e-4)
@@ -380,16 +362,12 @@ def test_a_result_holds_every_test_behind_a_friction(tmp_path):
 
 def test_check_names_tests_that_sensitivity_refuses(tmp_path, capsys):
     """A mean that is known to ten times itself: the same line from both, and nothing of tests that tell."""
-    for friction in ("0.001\nstandard_error = 0.5", "0.08"):
-        path = study(tmp_path, SMALL.replace("0.08", friction, 1))
-        refused = document(capsys, "check", str(path))["refusals"]
-        if friction == "0.08":
-            assert refused == []
-            continue
-        assert main(["sensitivity", str(path), "--json", "--samples", "64"]) == 2
-        line = capsys.readouterr().err.removeprefix("separatrix: ").rstrip()
-        assert line.startswith("Friction from tests of Armalon in liquid nitrogen, 440C must not scatter")
-        assert {"verb": "sensitivity", "sentence": line} in refused
+    assert document(capsys, "check", str(study(tmp_path)))["refusals"] == []
+    path = str(study(tmp_path, SMALL.replace("0.08", "0.001\nstandard_error = 0.5", 1)))
+    assert main(["sensitivity", path, "--json", "--samples", "64"]) == 2
+    line = capsys.readouterr().err.removeprefix("separatrix: ").rstrip()
+    assert line.startswith("Friction from tests of Armalon in liquid nitrogen, 440C must not scatter")
+    assert {"verb": "sensitivity", "sentence": line} in document(capsys, "check", path)["refusals"]
 
 
 WRONG_FILES = r"""

@@ -1,7 +1,6 @@
 """Reduction of a log: what is cut, averaged, told, kept and refused; wear from its depth."""
 
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -96,6 +95,7 @@ CURE = "Look at the plot; if the film failed, use the log only up to the rise."
 FAILS = noisy(lambda t: np.where(t > 80.0, 0.25, FALL))
 SEIZES = noisy(lambda t: np.where(t > 300.0, 0.6, 0.12))
 SPIKE = noisy(lambda t: np.where((t > 200) & (t < 202), 0.6, 0.12))
+BELOW = noisy(lambda t: -0.1 + 0.0 * t)
 COARSE = log(friction=lambda t: np.round(0.123 + 0.002 * _noise(t.size), 2), knows_cycle=False)
 LOADED = {"The normal force reaches its 10 N only at 40": "", "The normal force falls from 10 N": ""}
 TOLD = {  # a log, begin of a flag and words in it (None: no such flag), and what holds for the steady part
@@ -127,9 +127,7 @@ TOLD = {  # a log, begin of a flag and words in it (None: no such flag), and wha
         log(replace(QUIET, correlation=0.03), knows_cycle=False),
         {"The steady part holds 12 independent values": "fewer than 20"},
     ),
-    "a mean that no contact has": (
-        *(noisy(lambda t: -0.1 + 0.0 * t), {"Friction is outside 0 to 2": "check zero, sign and units"}),
-    ),
+    "a mean that no contact has": (BELOW, {"Friction is outside 0 to 2": "check zero, sign and units"}),
     "friction that never varies, without an error and without NaN": (
         *(log(friction=lambda t: np.full(t.size, 0.125)), {"Friction is 0.125 in every row": ""}),
         lambda test: (test.friction, test.standard_error, test.half_width) == (0.125, 0.0, 0.0),
@@ -286,6 +284,10 @@ def test_depth_over_pressure_and_way():
     assert found.wear_coefficient == pytest.approx(1e-15, abs=3.0 * found.wear_error)
     assert found.wear_error < 0.02e-15
     assert found.wear_share == pytest.approx(0.75, abs=1 / 3600)  # one row
+    # a way that is not known at its end has the share of the rows that have one
+    way = np.where(TIME > 3500.0, np.nan, LOG.distance)
+    found = sample_wear(replace(LOG, distance=way), LOG.conditions, slice(900, 3601))
+    assert found.wear_share == pytest.approx(2600.0 / 3500.0, abs=1 / 3500)  # one row
 
 
 def test_way_by_speed_and_time():
@@ -325,27 +327,12 @@ def test_why_there_is_no_coefficient_is_said(changes, flag):
     assert NO_GROWTH not in found.flags
 
 
-def test_share_of_a_way_with_gaps():
-    """A way that is not known at its end has the share of the rows that have one."""
-    way = np.where(TIME > 3500.0, np.nan, LOG.distance)
-    found = sample_wear(replace(LOG, distance=way), LOG.conditions, slice(900, 3601))
-    assert found.wear_share == pytest.approx(2600.0 / 3500.0, abs=1 / 3500)  # one row
-
-
-class Worn(SimpleNamespace):
-    """A test of an answer: an attribute is also `in` it."""
-
-    def __contains__(self, name):
-        """Whether it has this number."""
-        return hasattr(self, name)
-
-
 def test_scatter_of_few_tests_is_that_of_another_test():
     """By Student: 12.706 sqrt(3/2) deviations of two tests, 3.182 sqrt(5/4) of four; not 1.96."""
     ratio = 10.0 ** (0.1 / np.sqrt(1.5))
     for tests, times in (((1.0, ratio), 7.9), ((1.0, ratio, 1.0, ratio), 1.5)):
-        found = [Worn(wear_coefficient=1e-15 * one, conditions={"material": "PEEK"}) for one in tests]
-        (line,) = _worn(found)
+        found = ({"wear_coefficient": 1e-15 * one, "conditions": {"material": "PEEK"}} for one in tests)
+        (line,) = _worn([Part(one, {}) for one in found])
         assert f"a factor of {times} either way" in line
         assert f"({len(tests)} tests)" in line
     alone = {"wear_coefficient": 1e-15, "wear_error": 1e-18, "conditions": {"material": "PEEK"}}
