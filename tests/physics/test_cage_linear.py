@@ -75,7 +75,7 @@ def test_pockets_that_wrap_their_balls_guide_the_cage():
     wrapped = run_ensemble(replace(cage, pocket_shape=PocketShape.SPHERICAL), ensemble)
     assert np.all(straight.outcome == RunOutcome.DRIFTS)
     assert np.all(is_calm(wrapped.outcome))
-    assert np.all(wrapped.mean_offset < 3e-4 + 1e-5)
+    assert np.all(wrapped.mean_offset < 3e-4 + 1e-5)  # 7 N out, on half of 11 balls with 3 N/um: 0.5 um
 
 
 @pytest.mark.parametrize("changes", [{}, {"inner_speed": 0.0, "outer_speed": 1500.0}])

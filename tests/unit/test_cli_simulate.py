@@ -304,6 +304,6 @@ def test_the_pockets_bound_the_path_by_a_polygon():
     assert AROUND.size == found.size
     # of spheres by a circle, and off their balls by what lies in all three
     ball = run(count=3, pocket_shape="spherical", pocket_radial_offset=0.0)
-    np.testing.assert_allclose(run_pictures.pocket_boundary(ball), 3e-4, rtol=1e-12)
+    np.testing.assert_allclose(run_pictures.pocket_boundary(ball), 3e-4, rtol=1e-12)  # rounding
     off = run(count=3, pocket_shape="spherical", pocket_radial_offset=4e-4)  # a sphere of 0.5 mm
     assert run_pictures.pocket_boundary(off).min() == pytest.approx(1e-4)

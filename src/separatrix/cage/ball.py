@@ -111,13 +111,20 @@ def slip_slopes(slip, spin, side, heathcote, wide, creep):
     return traction, (p0 + p1) + (p2 + p3) + (p4 + p5), mixed, moment, TWO * across
 
 
-@inlined
-def race_force(p, row, l, speed, turn, o_r, side, lever):
-    """Force of a race on a free ball along the orbit, and its couple (z, r, t), less free rolling's."""
+@in_python_too
+def race_slips(p, row, l, speed, turn, o_r, lever):
+    """Normal, friction times load and a of a race; slip and spin of a ball there; what else its field has."""
     nz, nr, held, a = p[row + l], p[row + LANES + l], p[row + 2 * LANES + l], p[row + 3 * LANES + l]
     slip, spin, heathcote = p[row + 4 * LANES + l], p[row + 5 * LANES + l], p[row + 6 * LANES + l]
     wide, creep = p[row + 7 * LANES + l], p[row + 8 * LANES + l]
     slip, spin = slip + speed + lever * (turn * nr - o_r * nz), spin + a * (turn * nz + o_r * nr)
+    return nz, nr, held, a, slip, spin, heathcote, wide, creep
+
+
+@inlined
+def race_force(p, row, l, speed, turn, o_r, side, lever):
+    """Force of a race on a free ball along the orbit, and its couple (z, r, t), less free rolling's."""
+    nz, nr, held, a, slip, spin, heathcote, wide, creep = race_slips(p, row, l, speed, turn, o_r, lever)
     t, m, n = slip_field(slip, spin, side, heathcote, wide, creep)
     t, m = held * (p[row + 9 * LANES + l] - t), held * a * (p[row + 10 * LANES + l] - m)
     n = held * (p[row + 11 * LANES + l] - n)
@@ -127,10 +134,7 @@ def race_force(p, row, l, speed, turn, o_r, side, lever):
 @inlined
 def race_slopes(p, row, l, speed, turn, o_r, side, lever):
     """Slopes of `race_force`, sign turned: of force, couples z, r by speed, turn, o_r; of t by its spin."""
-    nz, nr, held, a = p[row + l], p[row + LANES + l], p[row + 2 * LANES + l], p[row + 3 * LANES + l]
-    slip, spin, heathcote = p[row + 4 * LANES + l], p[row + 5 * LANES + l], p[row + 6 * LANES + l]
-    wide, creep = p[row + 7 * LANES + l], p[row + 8 * LANES + l]
-    slip, spin = slip + speed + lever * (turn * nr - o_r * nz), spin + a * (turn * nz + o_r * nr)
+    nz, nr, held, a, slip, spin, heathcote, wide, creep = race_slips(p, row, l, speed, turn, o_r, lever)
     ts, tp, ms, mp, across = slip_slopes(slip, spin, side, heathcote, wide, creep)
     by_z, by_r, kept = lever * nr, lever * nz, held * a  # slip by turn, and by minus o_r
     tz, tr = ts * by_z + tp * a * nz, tp * a * nr - ts * by_r

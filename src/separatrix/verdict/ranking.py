@@ -474,7 +474,7 @@ def in_a_window(judgement: Judgement, safety: Mapping[str, Any]) -> Judgement:
 def beyond_critical(judgement: Judgement, safety: Mapping[str, Any]) -> Judgement:
     """The judgement; UNSTABLE of an undecided cage that is not STABLE by its runs, nor by its safety factor.
 
-    Surely more than a tenth of the runs whirl, and half of them do at its friction or less.
+    Surely more than a tenth of the runs whirl, and half of them may do so at its friction or less.
     """
     low, count = safety.get("safety_factor_low"), judgement.worst
     is_above = low is None or low > 1.0
