@@ -227,9 +227,7 @@ def test_friction_takes_from_cage_and_ball_what_it_turns_to_heat(shape):
     push, slide = places[0, rows.FORCE], places[0, rows.HEAT] / places[0, rows.FORCE]
     heat = 0.1 * push * (slide**2 - p[rows.PIVOT]) / slide
     assert push > 1.0
-    assert a[rows.RUB] + on_ball == pytest.approx(
-        -heat, rel=1e-6
-    )  # numbers of a cage are doubles; ONE is not
+    assert a[rows.RUB] + on_ball == pytest.approx(-heat, rel=1e-12)  # rounding
 
 
 def stepped(rate, slope, start, time, steps):
