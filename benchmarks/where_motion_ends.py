@@ -61,13 +61,12 @@ def longer(piece: Piece, duration: float) -> Piece:
     return piece._replace(numbers=numbers._replace(limits=limits))
 
 
-def names(found: dict[str, Array], pieces: list[Piece]) -> list[str]:
-    """Outcomes; apart those that the land keeps above the drive energy, which count as settled."""
-    drive = [piece.numbers.limits[outcome.DRIVE] for piece in pieces]
-    by_land = (found["cause"] == Cause.LAND_FRICTION) & (found["end_energy"] > drive)
+def names(found: dict[str, Array]) -> list[str]:
+    """Outcomes; apart those that whirl by their land."""
+    by_land = found["cause"] == Cause.LAND_FRICTION
     return [
-        RunOutcome(int(one)).name + " ON THE LAND" * bool(kept)
-        for one, kept in zip(found["outcome"], by_land, strict=True)
+        RunOutcome(int(one)).name + " BY THE LAND" * bool(land)
+        for one, land in zip(found["outcome"], by_land, strict=True)
     ]
 
 
@@ -89,7 +88,7 @@ def main() -> None:
                 follow(some)
                 for some in (pieces, [longer(one, LONGER * state.study.stability.duration) for one in pieces])
             )
-            ends = [names(found, pieces) for found in (usual, ten)]
+            ends = [names(found) for found in (usual, ten)]
             counts = Counter(zip(*ends, strict=True))
             changes += counts
             total += len(pieces)

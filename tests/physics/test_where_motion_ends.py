@@ -126,24 +126,34 @@ def seen_on_a_land(land_friction: float) -> tuple[Judgement, LongLook | None]:
     state = solve(replace(study, cage=replace(study.cage, land_friction=land_friction)))
     settings = replace(settings_for(study.stability, moving_cage(state, 0.05)), runs=16, duration=0.1)
     judged = judge_solution(state, 0.05, partial(Runner().whole_ensemble, settings=settings))
-    return judged, long_look(state, 0.05, settings, Runner())
+    return judged, long_look(state, 0.05, settings, Runner(), 16)
 
 
 def test_a_land_that_takes_over_a_calm_cage_keeps_it_from_stable():
     """At a land friction of 0.4, 15 of 16 runs settle within 0.1 s, and most whirl within 1 s."""
     judged, look = seen_on_a_land(0.4)
-    assert (judged.verdict, look.runs) == (Verdict.STABLE, 16)
+    assert judged.verdict is Verdict.STABLE
     assert look.duration == pytest.approx(1.0, rel=0.01)  # to the end of a look, of 2 ms
-    assert look.on_land > 8  # 12
+    assert look.count.runs == 16
+    assert look.count.whirls == look.count.whirls_by_land > 8  # 12
     assert 0.5 < look.largest_land_force < 5.0  # N, 1.6; the weight is 0.3 mN
-    assert (longer := seen_for_longer(judged, look)).verdict is Verdict.UNDECIDED
-    assert f"{look.on_land} of 16 runs end whirling round the land" in longer.reason
-    assert seen_for_longer(unstable := replace(judged, verdict=Verdict.UNSTABLE), look) == unstable
-    assert seen_for_longer(judged, replace(look, on_land=1)) == judged  # less than a tenth
+    assert (open_end := seen_for_longer(judged, look, None)).verdict is Verdict.UNDECIDED
+    assert f"{look.count.whirls} of 16 runs end whirling round the land" in open_end.reason
+    longer = seen_for_longer(judged, look, look)
+    assert (longer.verdict, longer.is_by_land, longer.worst) == (Verdict.UNSTABLE, True, look.count)
+    assert longer.probability_stable == look.count.probability_stable < 0.5
+    few = replace(look, count=replace(look.count, settles=15, whirls=1, whirls_by_land=1))
+    assert seen_for_longer(judged, few, look) == judged  # less than a tenth
+    calm = seen_for_longer(judged, look, few)
+    assert (calm.verdict, calm.worst.whirls) == (Verdict.STABLE, 1)
+    assert calm.reason.endswith(look.reason)
+    two = replace(look, count=replace(look.count, settles=14, whirls=2, whirls_by_land=2))
+    assert seen_for_longer(judged, look, two).verdict is Verdict.UNDECIDED
+    assert seen_for_longer(unstable := replace(judged, verdict=Verdict.UNSTABLE), look, look) == unstable
     # at 0.05 none whirls; without friction, as without a land, nothing could drive it
     judged, look = seen_on_a_land(0.05)
-    assert (look.on_land, look.largest_land_force) == (0, 0.0)
-    assert seen_for_longer(judged, look) == judged
+    assert (look.count.whirls, look.largest_land_force) == (0, 0.0)
+    assert seen_for_longer(judged, look, None) == judged
     assert seen_on_a_land(0.0)[1] is None
 
 

@@ -47,7 +47,8 @@ def _of_verdict(row: Document, cage: Document) -> Iterator[str]:
         yield f"STABLE with a safety factor of at most {high}"
     if row["verdict"] == "UNSTABLE" and low is not None and low > 1.0:
         yield f"UNSTABLE with a safety factor of at least {low}"
-    if row["verdict"] == "UNSTABLE" and 2 * worst["whirls"] <= row["runs"] and (low is None or low > 1.0):
+    is_by_land = 2 * worst["whirls_by_land"] > worst["whirls"] > 0.1 * row["runs"]
+    if row["verdict"] == "UNSTABLE" and low is None and not is_by_land and 2 * worst["whirls"] <= row["runs"]:
         yield f"few whirl: {worst}"
     if row["verdict"] != "STABLE":
         return
@@ -57,8 +58,7 @@ def _of_verdict(row: Document, cage: Document) -> Iterator[str]:
     if row["mean_offset"] > 1.2 * room:
         yield f"ends {row['mean_offset']} m off in a room of {room} m"
     for count in counts:
-        calm = count["settles"] + count["rolls"]
-        if calm < 0.9 * row["runs"] or count["kept_by_land"] > 0.1 * row["runs"]:
+        if count["settles"] + count["rolls"] < 0.9 * row["runs"]:
             yield f"STABLE with {count}"
     if row["cage_motion"] not in ("SETTLED", "ON THE LAND", "ROLLING"):
         yield f"STABLE and {row['cage_motion']}"

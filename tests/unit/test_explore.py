@@ -90,7 +90,7 @@ Judged = make_dataclass("Judged", ("verdict", "by_kick", "worst_kick"))
 
 def judged(verdict, *settles, runs=64):
     """As a judgement: its verdict, counts by kick (the rest whirling) and worst kick."""
-    known = dict.fromkeys(("drifts", "unresolved", "kept_by_land"), 0)
+    known = dict.fromkeys(("drifts", "unresolved", "whirls_by_land"), 0)
     known |= {"probability_low": 0.0, "probability_high": 1.0}
     ends = [{"settles": n - n // 2, "rolls": n // 2, "whirls": runs - n} for n in settles]
     found = tuple(

@@ -103,13 +103,13 @@ def test_of_one_cage_frictions_decide_who_is_tied(interval):
 
 
 def test_a_safety_factor_beyond_what_was_searched_ranks_by_its_bound():
-    """No friction up to 1 is enough: the lowest friction is first; a friction of 0 before all."""
-    rows = [ranked(name, 3e6, 0.3, 0.5, 0.1) for name in "ABC"]
-    bounds = [(None, 1.0 / 0.3, None), (None, 1.0 / 0.05, None), (None, None, None)]
+    """The lowest friction is first; a friction of 0 before all, one that a land drives behind all."""
+    rows = [replace(ranked(name, 3e6, 0.3, 0.5, 0.1), friction=0.1 * (name != "C")) for name in "ABCD"]
+    bounds = [(None, 1.0 / 0.3, None), (None, 1.0 / 0.05, None), (None, None, None), (None, None, None)]
     names = ("safety_factor", "safety_factor_low", "safety_factor_high")
     rows = [replace(row, **dict(zip(names, one, strict=True))) for row, one in zip(rows, bounds, strict=True)]
     values = [safety_interval(row)[0] for row in rows]
-    assert values == [1.0 / 0.3, 1.0 / 0.05, math.inf]
+    assert values == [1.0 / 0.3, 1.0 / 0.05, math.inf, 0.0]
 
 
 def test_where_eta_differs_the_margin_ranks():

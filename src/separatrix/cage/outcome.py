@@ -7,12 +7,13 @@ unless they say another:
 1. no number any more, or a ball at the edge of its pocket's wall: UNRESOLVED;
 2. more energy at any moment than `GROWN` times that of the initial disturbance and E together: WHIRLS;
 3. at rest for two looks: SETTLES;
-4. above `HIGH` E in ten looks, no lower in the later five, and turned over by friction: WHIRLS; but what
-   land friction maintains while the pockets take energy from it counts as settled, and is counted apart;
+4. above `HIGH` E in ten looks, no lower in the later five, and turned over by friction: WHIRLS;
 5. driven: below E for twenty looks, no higher in the later ten, and pockets give less than half: SETTLES;
 6. at the end, by the last fifth: below `WEAK` E a motion that the pockets feed ROLLS in them, any other
-   SETTLES; above, it WHIRLS if the pockets feed it and it does not fall, and is UNRESOLVED if it still
-   falls.
+   SETTLES; above, it WHIRLS if friction feeds it and it does not fall; of those that still fall it SETTLES
+   if only the land feeds it, and is UNRESOLVED otherwise.
+
+A run that WHIRLS has the cause LAND_FRICTION if the land feeds it while the pockets take energy from it.
 """
 
 from __future__ import annotations
@@ -57,7 +58,7 @@ class RunOutcome(IntEnum):
 
 
 class Cause(IntEnum):
-    """Why a run is unresolved; `LAND_FRICTION`: what keeps one moving that counts as settled."""
+    """Why a run is unresolved; `LAND_FRICTION`: what drives one that whirls, instead of its pockets."""
 
     NONE = 0
     LEFT_POCKET = 1
@@ -132,7 +133,7 @@ def end_of_motion(looks, i, touched, has_grown, limits):
         over = TURNED_OVER * mean(looks, ENERGY, end - TEN, end)
         is_fed = max(0.0, pocket) + max(0.0, land) > max(over, 0.5 * put_in)
         if above and is_fed and stays(looks, end - TEN, end):
-            return (settled, BY_LAND) if by_land else (WHIRLS, BY_NOTHING)
+            return WHIRLS, BY_LAND if by_land else BY_NOTHING
     if touched and seen >= 2 * TEN and drive > 0.0 and limits[IS_ADRIFT] == 0.0:
         below = True
         for j in range(end - 2 * TEN, end):
@@ -159,7 +160,8 @@ def end_by_last_fifth(looks, end, touched, settled, limits):
     if last <= limits[RESTING]:
         return settled, BY_NOTHING
     if land > 0.5 * put_in and pocket <= 0.0:
-        return settled, BY_LAND
+        lasts = last > WEAK * limits[DRIVE] and stays(looks, end // 2, end)
+        return (WHIRLS, BY_LAND) if lasts else (settled, BY_NOTHING)
     friction = max(0.0, pocket) + max(0.0, land)
     is_fed = friction > 0.5 * put_in and friction > last
     if last <= WEAK * limits[DRIVE]:

@@ -35,7 +35,7 @@ from separatrix.study.study import (
     Study,
 )
 from separatrix.verdict.effects import MOVED
-from separatrix.verdict.judgement import Judgement, KickCount, Verdict, transmitted_force
+from separatrix.verdict.judgement import Judgement, Verdict, transmitted_force
 from separatrix.verdict.stability_curve import RestitutionThreshold
 
 STRONG: Ratio = 1.0
@@ -57,12 +57,11 @@ yield (Johnson, Contact Mechanics, 1985, section 6.1)."""
 
 
 class Moved(NamedTuple):
-    """Whose cage moved, the largest pocket force and offset in any run, and where the runs ended."""
+    """Whose cage moved, and the largest pocket force and offset in any run."""
 
     name: str
     largest_contact_force: Newton
     largest_offset: Metre
-    by_kick: tuple[KickCount, ...] = ()
 
 
 def beyond_motion(solution: Solution, rows: Sequence[Moved]) -> Iterator[str]:
@@ -92,13 +91,6 @@ def beyond_motion(solution: Solution, rows: Sequence[Moved]) -> Iterator[str]:
             f"{names}: the cage centre reaches {format_quantity(worst, 'm', 3)}, beyond the land at "
             f"{format_quantity(gap, 'm', 3)} by more than {100 * (BEYOND_LAND - 1):.0f} %. The land's "
             "stiffness decides such numbers, a real cage may break first: they are bounds."
-        )
-    kept = {row.name: text for row in rows if (text := _kept_by_land(row))}
-    if kept:
-        yield (
-            f"Friction on the land, {design.land_friction:g}, keeps the cage whirling in some runs: "
-            f"{'; '.join(kept.values())}. They count as settled, for friction in the pockets slows that "
-            "motion; a real cage can be thrown into it too. Measure the land's friction, or lower it."
         )
 
 
@@ -189,13 +181,6 @@ def _fluid(solution: Solution) -> Iterator[str]:
             f"raise the critical friction by some {more:.0f} % (closed law). To count it: [cage] "
             f'added_mass = "{1e3 * found.added_mass:.2g} g", fluid_damping = "{found.damping:.2g} N s/m".'
         )
-
-
-def _kept_by_land(row: Moved) -> str:
-    """In how many runs from which kick, for one candidate; empty if in none."""
-    counts = [count for count in row.by_kick if count.kept_by_land]
-    runs = (f"{count.kept_by_land} of {count.runs} from {count.kick:.3g} m/s" for count in counts)
-    return f"{row.name} {', '.join(runs)}" if counts else ""
 
 
 PAPER_STATEMENT = (

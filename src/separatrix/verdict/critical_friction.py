@@ -101,8 +101,9 @@ def responses(
 ) -> dict[MetrePerSecond, Response]:
     """Counts of a cage from each kick, none yet, at any pocket friction.
 
-    A run counts that whirls or brings a ball to the edge of its wall. Run number r begins alike whatever
-    damping, friction and kick are (common random numbers).
+    A run counts that whirls or brings a ball to the edge of its wall; not one that friction on the land
+    drives, which friction in the pockets slows. Run number r begins alike whatever damping, friction and
+    kick are (common random numbers).
     """
 
     def look(kick: MetrePerSecond, friction: Ratio, first_run: int, runs: int) -> Count:
@@ -113,7 +114,8 @@ def responses(
         open_ends = int(np.count_nonzero(unresolved & (found.cause != Cause.FALLING)))
         # a motion that still falls does not whirl
         notes = (UNRESOLVED.format(open_ends, runs, kick, friction),) if open_ends else ()
-        return Count(int(np.count_nonzero(left | (found.outcome == RunOutcome.WHIRLS))), runs, notes)
+        whirling = (found.outcome == RunOutcome.WHIRLS) & (found.cause != Cause.LAND_FRICTION)
+        return Count(int(np.count_nonzero(left | whirling)), runs, notes)
 
     return {kick: Response(partial(look, kick), settings.runs) for kick in kicks}
 

@@ -33,7 +33,7 @@ from separatrix.ground.units import (
 )
 from separatrix.study.study import BallModel
 from separatrix.verdict import reasons
-from separatrix.verdict.reasons import CageMotion, cage_motion, kept_by_land, largest_room, left_pockets
+from separatrix.verdict.reasons import CageMotion, cage_motion, driven_by_land, largest_room, left_pockets
 
 if TYPE_CHECKING:
     from separatrix.cage.ensemble import Ensemble
@@ -67,8 +67,8 @@ class KickCount:
     whirls: int  # runs of this outcome
     drifts: int  # runs of this outcome
     unresolved: int  # runs of this outcome
-    kept_by_land: int
-    """Of those that settle: friction on the land keeps up more motion than frame and loads can give."""
+    whirls_by_land: int
+    """Of those that whirl: friction on the land drives them, and the pockets take energy from them."""
     probability_stable: Ratio  # share of the runs that settle or roll
     probability_low: Ratio  # of its 95 % Wilson interval
     probability_high: Ratio  # upper end of it
@@ -149,6 +149,11 @@ class Judgement:
         """Where the runs from the worst disturbance end."""
         return next(one for one in self.by_kick if one.kick == self.worst_kick)
 
+    @property
+    def is_by_land(self) -> bool:
+        """Whether friction on the land, and not in the pockets, makes the cage unstable."""
+        return self.verdict is Verdict.UNSTABLE and 2 * self.worst.whirls_by_land > self.worst.whirls
+
 
 def is_calm(outcome: NDArray[np.int64]) -> NDArray[np.bool_]:
     """Whether each run settles, or rolls in its pockets; same shape."""
@@ -159,8 +164,8 @@ def kick_counts(ensemble: Ensemble) -> tuple[KickCount, ...]:
     """Where the runs from each kick end."""
     runs, found = ensemble.outcome.shape[1], []
     counted = np.stack([ensemble.count(outcome) for outcome in RunOutcome], axis=1)
-    kept = np.count_nonzero(kept_by_land(ensemble), axis=1)
-    for kick, counts, land in zip(ensemble.kicks.tolist(), counted.tolist(), kept.tolist(), strict=True):
+    driven = np.count_nonzero(driven_by_land(ensemble), axis=1)
+    for kick, counts, land in zip(ensemble.kicks.tolist(), counted.tolist(), driven.tolist(), strict=True):
         settles, whirls, drifting, unresolved, rolls = counts
         low, high = wilson_interval(settles + rolls, runs)
         found.append(
@@ -171,7 +176,7 @@ def kick_counts(ensemble: Ensemble) -> tuple[KickCount, ...]:
                 whirls=whirls,
                 drifts=drifting,
                 unresolved=unresolved,
-                kept_by_land=land,
+                whirls_by_land=land,
                 probability_stable=(settles + rolls) / runs,
                 probability_low=low,
                 probability_high=high,
@@ -183,14 +188,13 @@ def kick_counts(ensemble: Ensemble) -> tuple[KickCount, ...]:
 def worst(counts: tuple[KickCount, ...]) -> int:
     """Place of the worst kick: of those from which most runs whirl, if any, the one with fewest calm runs.
 
-    Calm runs settle or roll. Of several it is the one with most whirls, then with most runs that the land
-    keeps moving, then with most that roll.
+    Calm runs settle or roll. Of several it is the one with most whirls, then with most that roll.
     """
     whirling = [i for i, count in enumerate(counts) if is_mostly(count.whirls, count.runs)]
 
-    def goodness(i: int) -> tuple[int, int, int, int, int]:
+    def goodness(i: int) -> tuple[int, int, int, int]:
         one = counts[i]
-        return one.calm, -one.whirls, -one.kept_by_land, -one.rolls, i
+        return one.calm, -one.whirls, -one.rolls, i
 
     return min(whirling or range(len(counts)), key=goodness)
 
@@ -198,11 +202,11 @@ def worst(counts: tuple[KickCount, ...]) -> int:
 def judge(cage: MovingCage, ensemble: Ensemble, *, capacity: Newton | None = None) -> Judgement:
     """Judge a cage by its ensemble, at the worst kick.
 
-    UNSTABLE: the 95 % interval of the share of its runs that whirl lies above one half. STABLE: at least 90 %
-    settle or roll in their pockets, the lower end of that share's 95 % interval is above one half, and the
-    cage neither drifts nor ends outside its pockets nor left its room nor, in any run, the range of numbers,
-    nor does friction on the land keep it moving in more than a tenth of the runs from a kick. UNDECIDED
-    otherwise. The rule is ours; it asks more of a stable cage than of an unstable one. `capacity` is the
+    UNSTABLE: the 95 % interval of the share of its runs that whirl lies above one half, or above one tenth
+    if friction on the land drives most of them: no factor on friction in the pockets tells how far that is
+    from being stable. STABLE: at least 90 % settle or roll in their pockets, the lower end of that share's
+    95 % interval is above one half, and the cage neither drifts nor ends outside its pockets nor left its
+    room nor, in any run, the range of numbers. UNDECIDED otherwise. The rule is ours. `capacity` is the
     largest force that the races transmit to a ball, f_BT (Q_i + Q_o) [N], by default that of its law of
     traction.
     """
@@ -317,8 +321,8 @@ def decide(
     counts = counts or kick_counts(ensemble)
     at = worst(counts)
     count = counts[at]
-    if is_mostly(count.whirls, count.runs):
-        return Verdict.UNSTABLE, reasons.whirls(ensemble, at)
+    if is_mostly(count.whirls, count.runs) or is_taken_by_land(count):
+        return Verdict.UNSTABLE, reasons.whirls(cage, ensemble, at)
     if wilson_interval(count.runs, count.runs)[0] <= FEW:
         return Verdict.UNDECIDED, reasons.too_few(count.runs)
     if not is_clear(count.calm + count.drifts, count.runs):
@@ -331,8 +335,6 @@ def decide(
     left = left_pockets(cage, ensemble) & is_calm(ensemble.outcome)
     if any(not is_clear(int(n), count.runs) for n in count.runs - left.sum(axis=1)):
         return Verdict.UNDECIDED, reasons.out_of_pockets(cage, ensemble, left)
-    if any(not is_clear(count.runs - count.kept_by_land, count.runs) for count in counts):
-        return Verdict.UNDECIDED, reasons.kept_moving(cage, ensemble)
     if ensemble.largest_offset.max() > largest_room(cage):
         return Verdict.UNDECIDED, reasons.beyond_room(cage, ensemble)
     return Verdict.STABLE, reasons.settles(cage, ensemble, at)
@@ -346,6 +348,11 @@ def is_mostly(count: int, runs: int) -> bool:
 def whirls_too_often(count: KickCount) -> bool:
     """Whether more runs whirl than a stable cage may have, beyond their scatter."""
     return wilson_interval(count.whirls, count.runs)[0] > 1.0 - CLEAR
+
+
+def is_taken_by_land(count: KickCount) -> bool:
+    """Whether more runs whirl than a stable cage may have, and friction on the land drives most of these."""
+    return whirls_too_often(count) and 2 * count.whirls_by_land > count.whirls
 
 
 def is_clear(count: int, runs: int) -> bool:

@@ -6,16 +6,21 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from separatrix.cage.closed_forms import drive_energy
 from separatrix.cage.ensemble import Runs
 from separatrix.cage.moving_cage import moving_cage
-from separatrix.cage.outcome import Cause
-from separatrix.cage.rows import LANES
 from separatrix.chain.solution import Solution
-from separatrix.ground.units import MetrePerSecond, Newton, Ratio, Second
+from separatrix.ground.units import Newton, Ratio, Second
 from separatrix.study.study import StabilitySettings
 from separatrix.verdict import reasons
-from separatrix.verdict.judgement import Judgement, Verdict, is_clear
+from separatrix.verdict.judgement import (
+    Judgement,
+    KickCount,
+    Verdict,
+    is_clear,
+    is_taken_by_land,
+    kick_counts,
+    worst,
+)
 from separatrix.verdict.long_jobs import Runner
 
 LONGER, LONGEST = 10.0, 3.0
@@ -25,46 +30,63 @@ unless `duration` itself is longer."""
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LongLook:
-    """Runs of the cage of least friction, which its pockets leave calm if they do any, followed for long."""
+    """Runs of a cage from the reference disturbance, followed for long."""
 
     friction: Ratio  # in its pockets
-    kick: MetrePerSecond  # that they begin with
-    runs: int  # followed
     duration: Second  # for which they were followed, all of it
-    on_land: int  # of them end whirling round the land, with more energy than frame and loads can give
-    largest_land_force: Newton  # of those; 0 without one
+    count: KickCount  # where they end
+    largest_land_force: Newton  # of those that whirl round the land; 0 without one
     reason: str  # the same in a sentence
+
+    @property
+    def is_clear(self) -> bool:
+        """Whether the land takes over no more of them than a stable cage may have."""
+        return is_clear(self.count.runs - self.count.whirls_by_land, self.count.runs)
 
 
 def long_look(
-    solution: Solution, friction: Ratio, settings: StabilitySettings, runner: Runner
+    solution: Solution, friction: Ratio, settings: StabilitySettings, runner: Runner, runs: int
 ) -> LongLook | None:
     """Follow runs from the reference disturbance, whose end is that of their last fifth; None without a land.
 
-    What drives a cage round its land is friction there, while its pockets take energy: so one friction in
-    the pockets does for all candidates on that land.
+    What drives a cage round its land is friction there, while its pockets take energy: so the candidate of
+    least friction shows whether the others on that land need a look of their own.
     """
-    cage, kick = moving_cage(solution, friction), settings.middle_kick
+    cage = moving_cage(solution, friction)
     if np.isinf(cage.land_gap) or cage.land_friction == 0.0:
         return None
     time = max(settings.duration, min(LONGER * settings.duration, LONGEST))
     for_long = replace(settings, duration=time)
-    found = runner.ensemble_of([Runs(cage, for_long, 0, LANES, whole=True)], (kick,))
-    taken = (found.cause == Cause.LAND_FRICTION) & (found.end_energy > drive_energy(cage))
+    found = runner.ensemble_of([Runs(cage, for_long, 0, runs, whole=True)], (settings.middle_kick,))
     return LongLook(
         friction=friction,
-        kick=kick,
-        runs=LANES,
         duration=float(found.followed.max()),
-        on_land=int(np.count_nonzero(taken)),
-        largest_land_force=float(found.largest_land_force[taken].max(initial=0.0)),
-        reason=reasons.taken_by_land(cage, found, taken),
+        count=kick_counts(found)[0],
+        largest_land_force=float(found.largest_land_force[reasons.driven_by_land(found)].max(initial=0.0)),
+        reason=reasons.taken_by_land(cage, found),
     )
 
 
-def seen_for_longer(judgement: Judgement, look: LongLook | None) -> Judgement:
-    """The judgement; UNDECIDED of a stable cage whose land takes over more than a tenth of long runs."""
-    is_calm = look is None or is_clear(look.runs - look.on_land, look.runs)
-    if look is None or is_calm or judgement.verdict is not Verdict.STABLE:
+def seen_for_longer(judgement: Judgement, first: LongLook | None, own: LongLook | None) -> Judgement:
+    """The judgement of a stable cage after a long look: `own`, where the `first`, at another, asks for it.
+
+    Its runs then stand for those from their disturbance. UNSTABLE if its land surely takes over more than a
+    tenth of them, UNDECIDED if it does so by their count alone, or while there is none of its own.
+    """
+    if first is None or first.is_clear or judgement.verdict is not Verdict.STABLE:
         return judgement
-    return replace(judgement, verdict=Verdict.UNDECIDED, reason=look.reason)
+    if own is None:
+        return replace(judgement, verdict=Verdict.UNDECIDED, reason=first.reason)
+    counts = tuple(own.count if one.kick == own.count.kick else one for one in judgement.by_kick)
+    verdict = Verdict.STABLE if own.is_clear else Verdict.UNDECIDED
+    at = counts[worst(counts)]
+    return replace(
+        judgement,
+        verdict=Verdict.UNSTABLE if is_taken_by_land(own.count) else verdict,
+        reason=f"{judgement.reason} {own.reason}" if own.is_clear else own.reason,
+        by_kick=counts,
+        worst_kick=at.kick,
+        probability_stable=at.probability_stable,
+        probability_low=at.probability_low,
+        probability_high=at.probability_high,
+    )

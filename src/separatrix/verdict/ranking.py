@@ -6,7 +6,7 @@ import itertools
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, fields, replace
 from functools import partial
-from math import log
+from math import inf, log
 from typing import Any, NamedTuple, TypeVar
 
 from separatrix.cage.disturbance import settings_for
@@ -35,6 +35,7 @@ from separatrix.verdict.beyond_models import (
 )
 from separatrix.verdict.critical_friction import (
     CageLimit,
+    SafetyFactor,
     cage_limit,
     free_work,
     safety_factor,
@@ -43,8 +44,10 @@ from separatrix.verdict.critical_friction import (
 from separatrix.verdict.draws import Case, DrawnBearings, drawn_bearings
 from separatrix.verdict.effects import Change, Effect, effects_on
 from separatrix.verdict.judgement import (
+    CLEAR,
     Judgement,
     Verdict,
+    is_mostly,
     judge_solution,
     transmitted_force,
     whirls_too_often,
@@ -105,10 +108,11 @@ class Limit:
 
 @dataclass(frozen=True, slots=True)
 class Longer:
-    """A long look at the cage of least friction."""
+    """A long look at a cage."""
 
     pocket: Pocket
     friction: Ratio
+    runs: int
 
 
 Piece = Asked | Knot | Limit | Longer | Case
@@ -139,7 +143,7 @@ class _Question:
     drawn: DrawnBearings | None
     keys: Sequence[Asked]  # of all verdicts by the study's model
     beside: Sequence[Asked]  # of those by the paper's, in the bearing's own environment
-    longer: Longer | None  # in the bearing's own environment; None in the paper's model
+    longer: Longer | None  # of the least friction in the bearing's own environment; None in the paper's model
     runner: Runner
 
     @property
@@ -237,7 +241,7 @@ def _notes(
         share = f"{len(failures)} of {study.stability.runs}"
         notes.append(f"{share} draws of the uncertain inputs make no bearing: {failures[0]}")
     judged = [(row.name, row.judgement) for row in rows if not isinstance(row, NotMeasured) and row.judgement]
-    moved = [Moved(n, j.largest_contact_force, j.largest_offset, j.by_kick) for n, j in judged]
+    moved = [Moved(n, j.largest_contact_force, j.largest_offset) for n, j in judged]
     reference = question.cages[question.reference]
     return (*filter(None, notes), *beyond_motion(reference, moved))
 
@@ -280,14 +284,27 @@ def _question(
         drawn=drawn,
         keys=keys,
         beside=[] if is_paper else own,
-        longer=least and Longer(least.pocket, least.friction),
+        longer=least and Longer(least.pocket, least.friction, LANES),
         runner=runner,
     )
 
 
 def _between(question: _Question, found: Findings) -> list[Piece]:
-    """Critical frictions that are wanted, by the study's model and on the paper's curves."""
-    return [*_limits(question, found), *_knots(question, found)]
+    """Critical frictions that are wanted, by the study's model and on the paper's curves, and long looks."""
+    return [*_limits(question, found), *_knots(question, found), *_longer(question, found)]
+
+
+def _longer(question: _Question, found: Findings) -> list[Longer]:
+    """Long looks at stable cages, where that at the least friction finds that the land takes it over."""
+    first = found.get(question.longer) if question.longer else None
+    if first is None or first.is_clear:
+        return []
+    stable = [key for key in question.keys if key in found and found[key].verdict is Verdict.STABLE]
+    return [_own_look(question, key) for key in stable]
+
+
+def _own_look(question: _Question, key: Asked) -> Longer:
+    return Longer(key.pocket, key.friction, question.settings.runs)
 
 
 def _limits(question: _Question, found: Findings) -> list[Limit]:
@@ -345,7 +362,7 @@ def _load(question: _Question, piece: Piece) -> Load:
         return expected_load(question.settings, eta, band=eta is None)
     kicks, settings = len(question.settings.kicks), question.settings
     if isinstance(piece, Longer):
-        return Load(LANES, dear=20.0)
+        return Load(piece.runs, dear=20.0)
     if not isinstance(piece, Limit):
         return Load(kicks * settings.runs)
     free = free_work(question.cages[piece.pocket], settings, max(key.friction for key in question.keys))
@@ -369,7 +386,7 @@ def _computed(question: _Question, piece: Piece) -> object:
         change = question.effects[piece.effect].values
         return cage_limit(solution, few, runner, highest=highest, change=change)
     if isinstance(piece, Longer):
-        return long_look(question.cages[piece.pocket], piece.friction, settings, runner)
+        return long_look(question.cages[piece.pocket], piece.friction, settings, runner, piece.runs)
     solved = question.paper if piece.is_paper else question.cages
     run = partial(runner.whole_ensemble, settings=settings)
     return judge_solution(solved[piece.pocket], piece.friction, run)
@@ -434,13 +451,16 @@ def _row(
     }
     limit = _of_pocket(question, found, Limit, pocket)
     values |= _safety(limit, friction, question.spreads.get(name, 0.0))
-    judgement = found.get(Asked(pocket, friction.mean))
+    judgement = found.get(key := Asked(pocket, friction.mean))
     if judgement is None:
         return NotFinished(**values, reason=NOT_FINISHED)
     if broken := not_finite(judgement):
         return NotFinished(**values, reason=broken)
-    judgement = seen_for_longer(judgement, found.get(question.longer) if question.longer else None)
+    first = found.get(question.longer) if question.longer else None
+    judgement = seen_for_longer(judgement, first, found.get(_own_look(question, key)))
     values["judgement"] = judgement = beyond_critical(in_a_window(judgement, values), values)
+    if judgement.is_by_land:
+        values |= asdict(SafetyFactor())
     values["over_inputs"] = found.get(Case(name)) if environment == question.environment else None
     threshold = _threshold(question, found, pocket, friction)
     by_paper = Asked(pocket, friction.mean, True)
@@ -474,15 +494,21 @@ def in_a_window(judgement: Judgement, safety: Mapping[str, Any]) -> Judgement:
 def beyond_critical(judgement: Judgement, safety: Mapping[str, Any]) -> Judgement:
     """The judgement; UNSTABLE of an undecided cage that is not STABLE by its runs, nor by its safety factor.
 
-    Surely more than a tenth of the runs whirl, and half of them may do so at its friction or less.
+    Surely more than a tenth of the runs whirl, and half of them may do so at its friction or less; or more
+    than a tenth whirl, and half surely do so at less.
     """
-    low, count = safety.get("safety_factor_low"), judgement.worst
-    is_above = low is None or low > 1.0
-    if judgement.verdict is not Verdict.UNDECIDED or is_above or not whirls_too_often(count):
+    count = judgement.worst
+    ends_of_factor = (safety.get(f"safety_factor_{end}") for end in ("low", "high"))
+    low, high = (inf if end is None else end for end in ends_of_factor)
+    is_beyond = low <= 1.0 and whirls_too_often(count)
+    is_beyond |= (
+        high < 1.0 and is_mostly(count.runs, count.runs) and count.whirls > (1.0 - CLEAR) * count.runs
+    )
+    if judgement.verdict is not Verdict.UNDECIDED or not is_beyond:
         return judgement
     critical = format_number(safety["own_critical_friction"], 3)
     said = f"Of {count.runs} runs from {count.kick:g} m/s {ends(count)}, and half whirl at a friction of "
-    reason = f"{said}{critical}: surely fewer than nine in ten stay calm."
+    reason = f"{said}{critical}: neither calls it stable."
     return replace(judgement, verdict=Verdict.UNSTABLE, reason=reason)
 
 

@@ -57,7 +57,8 @@ class MeasuredCandidate:
     critical_kick: MetrePerSecond | None = None  # disturbance from which the critical friction is lowest
     critical_ball: str | None = None  # that decided the critical friction
     estimated_critical_friction: Ratio | None = None  # by the closed law, to check the order
-    safety_factor: Ratio | None = None  # critical friction over friction; null as the critical friction is
+    safety_factor: Ratio | None = None
+    """Critical friction over friction; null as the critical friction is, and where the land drives it."""
     safety_factor_low: Ratio | None = None  # of its 95 % interval, with the scatter of friction and inputs
     safety_factor_high: Ratio | None = None  # upper end of it
 
@@ -244,10 +245,10 @@ def same_rank(
 
 
 def safety_interval(row: Ranked) -> Interval:
-    """Safety factor with the ends of its interval; of a friction of 0 it is infinite."""
+    """Safety factor with the ends of its interval; infinite of a friction of 0, 0 where the land drives."""
     low, high = row.safety_factor_low, row.safety_factor_high
     if low is None:
-        return inf, inf, inf
+        return (inf, inf, inf) if row.friction == 0.0 else (0.0, 0.0, 0.0)
     value = low if row.safety_factor is None else row.safety_factor
     return value, low, inf if high is None else high
 

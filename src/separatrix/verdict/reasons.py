@@ -21,8 +21,11 @@ if TYPE_CHECKING:
 
 Mask = NDArray[np.bool_]
 
-LEFT = 2.0
-"""Mean offset, in half clearances of the pockets, at which a cage with a land has left its pockets."""
+LEFT, IN_WALL = 2.0, 0.1
+"""Mean offset at which a calm cage on its land has left its pockets: in half their clearances, and in
+diameters of a ball. The balls yield along their orbits, so a wide land lets the cage move on with them; but
+beyond half a wall of a fifth of a ball, a thin one by our guess, they are out of it. Where the diameters of a
+cage are known each ball is followed to its edge."""
 
 BEYOND = 2.0
 """Offset that no cage survives, over the room of its centre (land or half pocket clearance, the larger)."""
@@ -121,15 +124,19 @@ def force_limit(cage: MovingCage, capacity: Newton | None = None) -> Newton:
     return (held if capacity is None else capacity) / cage.ball_cage_friction
 
 
-def kept_by_land(ensemble: Ensemble) -> Mask:
-    """Runs that count as settled and that friction on the land keeps moving, shape (kick, run)."""
-    return np.asarray((ensemble.cause == Cause.LAND_FRICTION) & (ensemble.outcome != RunOutcome.WHIRLS))
+def driven_by_land(ensemble: Ensemble) -> Mask:
+    """Runs that whirl by friction on the land, while the pockets take energy, shape (kick, run)."""
+    return np.asarray((ensemble.cause == Cause.LAND_FRICTION) & (ensemble.outcome == RunOutcome.WHIRLS))
 
 
 def left_pockets(cage: MovingCage, ensemble: Ensemble) -> Mask:
-    """Runs whose centre ended beyond the clearance of the pockets, shape (kick, run)."""
-    limit = LEFT * cage.half_play if cage.half_play > 0.0 else math.inf
-    return np.asarray(ensemble.mean_offset > limit)
+    """Runs whose centre ended so far off that balls are out of their pockets, shape (kick, run)."""
+    return np.asarray(ensemble.mean_offset > in_pockets(cage))
+
+
+def in_pockets(cage: MovingCage) -> Metre:
+    """Offset beyond which balls are out of their pockets [m]."""
+    return max(LEFT * cage.half_play, IN_WALL * cage.ball_diameter) if cage.half_play > 0.0 else math.inf
 
 
 def largest_room(cage: MovingCage) -> Metre:
@@ -163,10 +170,10 @@ def settles(cage: MovingCage, ensemble: Ensemble, kick: int) -> str:
         power = cage.land_friction * median((ensemble.rubbing_force * ensemble.rubbing_speed)[kick][settled])
         rubs = f"{_three(force)} N at {_three(speed)} m/s ({_watt(power)})"
         said += f"; the cage then rubs on its land with {rubs}"
-    return f"{said}.{few_kept(cage, ensemble)}{few_left(ensemble)}"
+    return f"{said}.{few_driven(cage, ensemble)}{few_left(ensemble)}"
 
 
-def whirls(ensemble: Ensemble, kick: int) -> str:
+def whirls(cage: MovingCage, ensemble: Ensemble, kick: int) -> str:
     """Return what share whirls from the worst kick, how fast, and what friction feeds it."""
     whirling = ensemble.outcome[kick] == RunOutcome.WHIRLS
     pace = float(np.median(ensemble.whirl_frequency[kick][whirling]))
@@ -176,9 +183,11 @@ def whirls(ensemble: Ensemble, kick: int) -> str:
     power = fed[whirling & (fed > 0.0)]
     if not power.size:
         return f"{first}; the energy passes {GROWN:g} times that of disturbance and frame."
-    land = "friction on the land, more than that in the pockets,"
-    what = land if _fed_by_land(ensemble, kick) else "friction"
-    return f"{first}; {what} feeds the cage {_watt(float(np.median(power)))}."
+    what, force = "friction", ""
+    if _fed_by_land(ensemble, kick):
+        what = f"friction on the land, {cage.land_friction:g}, and not in the pockets,"
+        force = f", with up to {_three(ensemble.largest_land_force[kick][whirling].max())} N there"
+    return f"{first}; {what} feeds the cage {_watt(float(np.median(power)))}{force}."
 
 
 def _fed_by_land(ensemble: Ensemble, kick: int) -> bool:
@@ -239,52 +248,44 @@ def _first_left(ensemble: Ensemble) -> str:
     return f"first ball {ball} after {format_quantity(time, 's', 3)}"
 
 
-def kept_moving(cage: MovingCage, ensemble: Ensemble) -> str:
-    """Return in how many runs friction on the land keeps the cage moving, and how hard it then presses."""
-    kept = kept_by_land(ensemble)
-    return (
-        f"Friction on the land, {cage.land_friction:g}, and not in the pockets, keeps the cage moving in "
-        f"{int(kept.sum())} of {kept.size} runs: {_lively(ensemble, kept)}. Pocket friction does not decide "
-        f"that; check [cage] land_friction."
-    )
-
-
-def taken_by_land(cage: MovingCage, ensemble: Ensemble, taken: Mask) -> str:
+def taken_by_land(cage: MovingCage, ensemble: Ensemble) -> str:
     """Return how many runs that were followed for long whirl round the land in the end, and how hard."""
+    taken = driven_by_land(ensemble)
     time, runs = _three(ensemble.followed.max()), f"{int(taken.sum())} of {taken.size} runs"
     if not taken.any():
         return f"Followed for {time} s, {runs} whirl round the land."
     return (
-        f"The cage settles, but followed for {time} s, {runs} end whirling round the land: "
+        f"Followed for {time} s, {runs} end whirling round the land: "
         f"{_lively(ensemble, taken)}. Friction there, {cage.land_friction:g}, and not in the pockets, drives "
         "that; check [cage] land_friction."
     )
 
 
-def few_kept(cage: MovingCage, ensemble: Ensemble) -> str:
+def few_driven(cage: MovingCage, ensemble: Ensemble) -> str:
     """Return the same for the few runs of a stable cage; empty if there is none."""
-    kept = kept_by_land(ensemble)
-    if not kept.any():
+    driven = driven_by_land(ensemble)
+    if not driven.any():
         return ""
-    kicks = ", ".join(f"{kick:g}" for kick in ensemble.kicks[kept.any(axis=1)])
+    kicks = ", ".join(f"{kick:g}" for kick in ensemble.kicks[driven.any(axis=1)])
     return (
-        f" From {kicks} m/s, {int(kept.sum())} of the runs that settle are kept moving by friction on the "
-        f"land, {cage.land_friction:g}: {_lively(ensemble, kept)}; friction in the pockets slows that motion."
+        f" From {kicks} m/s, {int(driven.sum())} runs whirl round the land by friction there, "
+        f"{cage.land_friction:g}: {_lively(ensemble, driven)}."
     )
 
 
-def _lively(ensemble: Ensemble, kept: Mask) -> str:
-    energy, power = (median(values[kept]) for values in (ensemble.end_energy, ensemble.land_power))
-    force = float(ensemble.largest_land_force[kept].max())
+def _lively(ensemble: Ensemble, runs: Mask) -> str:
+    energy, power = (median(values[runs]) for values in (ensemble.end_energy, ensemble.land_power))
+    force = float(ensemble.largest_land_force[runs].max())
     return f"{format_quantity(energy, 'J', 3)}, fed {_watt(power)}, up to {_three(force)} N on the land"
 
 
 def out_of_pockets(cage: MovingCage, ensemble: Ensemble, left: Mask) -> str:
     """Return how far off the centre ends."""
-    offset, play = 1e3 * float(ensemble.mean_offset[left].max()), 1e3 * cage.half_play
+    offset, most = 1e3 * float(ensemble.mean_offset[left].max()), 1e3 * in_pockets(cage)
     return (
         f"The motion settles, but the cage centre ends up to {_three(offset)} mm off in {int(left.sum())} "
-        f"of {left.size} runs, more than {LEFT:g} times the half play of its pockets ({_three(play)} mm): "
+        f"of {left.size} runs, where balls are out of their pockets (half a play of "
+        f"{_three(1e3 * cage.half_play)} mm, a wall of at least {_three(most)} mm on either side): "
         f"the land is too wide to guide it."
     )
 

@@ -27,7 +27,7 @@ from separatrix.ground.units import (
 )
 from separatrix.study.candidates import require_friction
 from separatrix.study.study import Operation, Study
-from separatrix.verdict.critical_friction import cage_limit, safety_factor
+from separatrix.verdict.critical_friction import SafetyFactor, cage_limit, safety_factor
 from separatrix.verdict.judgement import Judgement, judge_solution
 from separatrix.verdict.long_jobs import Runner, scattered
 from separatrix.verdict.parameter_axes import (
@@ -352,8 +352,7 @@ def _verdict(solution: Solution, runner: Runner) -> dict[str, Any]:
     orbit = None
     if judged.cage_motion is CageMotion.WHIRLING and judged.whirl_ratio is not None:
         orbit = judged.whirl_ratio * abs(solution.bearing.cage_speed) / (2.0 * math.pi)
-    return {name: getattr(judged, name) for name in EVIDENCE} | {
-        "verdict": judged.verdict.name,
-        "cage_motion": None if judged.cage_motion is None else judged.cage_motion.value,
-        "orbit_frequency": orbit,
-    }
+    factor = asdict(SafetyFactor()) if judged.is_by_land else {}  # that of the pockets has no meaning
+    found = {name: getattr(judged, name) for name in EVIDENCE}
+    motion = None if judged.cage_motion is None else judged.cage_motion.value
+    return found | {"verdict": judged.verdict.name, "cage_motion": motion, "orbit_frequency": orbit} | factor

@@ -134,7 +134,7 @@ def _answer(drawn: DrawnBearings, judged: Mapping[Case, Counted], asked: int) ->
     ranking = ranking_question(drawn.study)
     rows = _rows(drawn, judged)
     moved = [
-        Moved(row.name, found.largest_contact_force, found.largest_offset, found.by_kick)
+        Moved(row.name, found.largest_contact_force, found.largest_offset)
         for row in rows
         if isinstance(row, UncertainMaterial) and (found := row.judgement)
     ]
@@ -262,12 +262,10 @@ def counted_among(bearings: DrawnBearings, case: Case, runner: Runner, cage: Mov
 
 
 def settles_more(count: KickCount, judged: Judgement) -> bool:
-    """Whether significantly more settle or roll from a kick than from the worst; most, in their pockets."""
+    """Whether significantly more settle or roll from a kick than from the worst."""
     worst = next(one for one in judged.by_kick if one.kick == judged.worst_kick)
     low = wilson_interval(count.calm, count.runs, NORMAL)[0]
-    return 2 * count.kept_by_land <= count.runs and low > max(
-        FEW, wilson_interval(worst.calm, worst.runs, NORMAL)[1]
-    )
+    return low > max(FEW, wilson_interval(worst.calm, worst.runs, NORMAL)[1])
 
 
 def is_plain(judged: Judgement) -> bool:

@@ -56,8 +56,18 @@ def drifting(row: Part) -> Part | None:
     """Return a row that nothing guides and whose runs do not all whirl: only these have a drift rate."""
     if not judged(row) or not row.drift_rate_law:
         return None
-    worst = next(one for one in row.by_kick if one.kick == row.worst_kick)
-    return None if worst.whirls == row.runs else row
+    return None if worst(row).whirls == row.runs else row
+
+
+def worst(row: Part) -> Part:
+    """Return where the runs of a row from its worst disturbance end."""
+    found: Part = next(one for one in row.by_kick if one.kick == row.worst_kick)
+    return found
+
+
+def is_by_land(row: Part) -> bool:
+    """Whether friction on the land makes the cage of a row unstable."""
+    return bool(row.verdict == "UNSTABLE" and 2 * worst(row).whirls_by_land > worst(row).whirls)
 
 
 def pocket_force(row: Part) -> Cell:
@@ -134,6 +144,8 @@ def _safety(first: Sequence[Part]) -> str:
     """Return the safety factors of the candidates that rank first, and what they are made of."""
     criticals, frictions = span(first, "own_critical_friction"), span(first, "friction")
     lowest = min(first, key=lambda row: row.safety_factor_low if "safety_factor_low" in row else inf)
+    if all(judged(row) and is_by_land(row) for row in first):
+        return "No safety factor: friction in the pockets does not decide."
     if lowest.get("own_critical_friction") == 0.0:
         return f"Safety factor 0: {without_friction(first)}; their friction is {frictions}."
     factor = show(lowest, "safety_factor")
@@ -154,6 +166,9 @@ def deciding(answer: Part, rows: Sequence[Part]) -> Iterator[str]:
     if others := [(verdict, name) for verdict, name, mean in drawn if verdict not in (None, mean)]:
         yield f"That is at the means of the uncertain inputs; with them drawn: {by_verdict(others)}."
     best = known[0]
+    if driven := [row.name for row in known if is_by_land(row)]:
+        friction = f"friction on the land, {answer.cage.land_friction:g}, and not in the pockets"
+        yield f"{', '.join(driven)}: {friction}, drives the whirl."
     undriven = [row for row in known if row.get("own_critical_friction") == 0.0]
     if undriven and best.get("own_critical_friction") != 0.0:
         yield f"{', '.join(row.name for row in undriven)}: {without_friction(undriven)}."
