@@ -12,8 +12,9 @@ import pytest
 from cages import SMALL as CAGE
 
 from separatrix import Runner, critical_friction, restitution_threshold, stability_curve, wilson_interval
-from separatrix.cage import linear_critical_friction, run_ensemble
+from separatrix.cage import RunOutcome, linear_critical_friction, run_ensemble
 from separatrix.cage.closed_forms import drift_rate_law
+from separatrix.cage.outcome import Cause
 from separatrix.study.study import Guidance, StabilitySettings
 from separatrix.verdict.critical_friction import cage_at
 from separatrix.verdict.stability_curve import curve_of_points, threshold_factors
@@ -93,13 +94,16 @@ def test_below_the_band_kicks_die_and_above_they_grow(curve):
         assert wilson_interval(int((above.outcome[kick] != 1).sum()), 32)[0] < 0.1
 
 
-def test_a_whirl_of_the_land_leaves_no_crossing():
-    """Where friction on the land makes it grow without limit, none in the pockets is small enough."""
+def test_a_whirl_of_the_land_is_none_of_the_pockets():
+    """Friction on the land makes it grow without limit at any in the pockets, which drives none of it."""
     land = {"land_clearance": 0.05e-3, "land_friction": 0.5, "land_restitution": 1.0}
     driven = replace(CAGE, guidance=Guidance.INNER, cage_speed=400.0, **land)
     found = critical_friction(driven, 0.9, replace(SETTINGS, runs=8, kicks=(0.5,)))
     assert found.critical_friction is None
-    assert "whirl even at zero pocket friction" in found.reason
+    assert "under 50 % of the runs from 0.5 m/s whirl by friction in the pockets, at 1" in found.reason
+    ends = run_ensemble(replace(driven, ball_cage_friction=0.2), SETTINGS, kicks=(0.5,), runs=8)
+    assert np.all(ends.outcome == RunOutcome.WHIRLS)
+    assert np.all(ends.cause == Cause.LAND_FRICTION)
 
 
 def test_the_curve_of_a_landless_cage_says_that_it_drifts():

@@ -340,7 +340,9 @@ def candidate(verdict="STABLE", critical=(0.248, 0.231, 0.269), friction=0.28):
     factor = {"safety_factor": None, "safety_factor_low": ends[f"{CRITICAL}_low"] / friction}
     sizes = {"land_clearance": 2e-4, "pocket_clearance": 2.5e-4}
     rest = {"name": "Phenolic", "rank": 1, "friction": friction, "verdict": verdict, "extrapolation": []}
-    return Part({**rest, **sizes, **factor, **ends, "cage_motion": "SETTLED"}, dict.fromkeys(sizes, "m"))
+    by_kick = [{"kick": 0.1, "whirls": 64, "whirls_by_land": 0}]
+    rest |= {"cage_motion": "SETTLED", "worst_kick": 0.1, "by_kick": by_kick}
+    return Part({**rest, **sizes, **factor, **ends}, dict.fromkeys(sizes, "m"))
 
 
 @pytest.mark.parametrize(

@@ -126,7 +126,7 @@ USUAL = logistic(0.12, 8.0)
         ),
         (
             (lambda f: min(0.7, USUAL(f)), USUAL, USUAL),
-            *("high", "under 90 % of the runs from 0.2 m/s whirl at friction 1"),
+            *("high", "under 90 % of the runs from 0.2 m/s whirl by friction in the pockets, at 1"),
         ),
     ],
 )

@@ -36,13 +36,11 @@ from separatrix.study.study import (
 )
 from separatrix.verdict.effects import MOVED
 from separatrix.verdict.judgement import Judgement, Verdict, transmitted_force
+from separatrix.verdict.reasons import BEYOND_LAND
 from separatrix.verdict.stability_curve import RestitutionThreshold
 
 STRONG: Ratio = 1.0
 """Kick over the pocket speed beyond which a cage with round pockets tilts (docs/theory/cage.md)."""
-
-BEYOND_LAND: Ratio = 1.2
-"""Offset over the land clearance beyond which the land's spring is the question, not the cage."""
 
 
 STIFF: Ratio = 3.0

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from separatrix.cage.closed_forms import drift_rate_law, room
 from separatrix.cage.outcome import GROWN, Cause, RunOutcome
 from separatrix.ground.schema import Spelled
-from separatrix.ground.units import Array, Metre, Newton, Watt, format_number, format_quantity
+from separatrix.ground.units import Array, Metre, Newton, Ratio, Watt, format_number, format_quantity
 
 if TYPE_CHECKING:
     from separatrix.cage.course import History
@@ -26,6 +26,9 @@ LEFT, IN_WALL = 2.0, 0.1
 diameters of a ball. The balls yield along their orbits, so a wide land lets the cage move on with them; but
 beyond half a wall of a fifth of a ball, a thin one by our guess, they are out of it. Where the diameters of a
 cage are known each ball is followed to its edge."""
+
+BEYOND_LAND: Ratio = 1.2
+"""Offset over the room of the cage's centre beyond which the land's spring is the question, not the cage."""
 
 BEYOND = 2.0
 """Offset that no cage survives, over the room of its centre (land or half pocket clearance, the larger)."""
@@ -130,8 +133,10 @@ def driven_by_land(ensemble: Ensemble) -> Mask:
 
 
 def left_pockets(cage: MovingCage, ensemble: Ensemble) -> Mask:
-    """Runs whose centre ended so far off that balls are out of their pockets, shape (kick, run)."""
-    return np.asarray(ensemble.mean_offset > in_pockets(cage))
+    """Runs whose centre ended out of the pockets, or pressed far into the land, shape (kick, run)."""
+    return np.asarray(
+        ensemble.mean_offset > min(in_pockets(cage), BEYOND_LAND * max(cage.land_gap, cage.half_play))
+    )
 
 
 def in_pockets(cage: MovingCage) -> Metre:
@@ -280,13 +285,20 @@ def _lively(ensemble: Ensemble, runs: Mask) -> str:
 
 
 def out_of_pockets(cage: MovingCage, ensemble: Ensemble, left: Mask) -> str:
-    """Return how far off the centre ends."""
-    offset, most = 1e3 * float(ensemble.mean_offset[left].max()), 1e3 * in_pockets(cage)
+    """Return how far off the centre ends, and whether its balls are out or its land is pressed in."""
+    offset, most = float(ensemble.mean_offset[left].max()), in_pockets(cage)
+    said = f"The motion settles, but the cage centre ends up to {_three(1e3 * offset)} mm off in "
+    said += f"{int(left.sum())} of {left.size} runs"
+    if offset > most:
+        wall = f"half a wall of {_three(1e3 * most)} mm at least"
+        return f"{said}, where its balls are out of their pockets ({wall}): the land is too wide to guide it."
+    force = format_quantity(median(ensemble.rubbing_force[left]), "N", 3)
+    what = (
+        "its balls, which lead and lag under radial load or moment," if cage.orbital_cosines else "its motion"
+    )
     return (
-        f"The motion settles, but the cage centre ends up to {_three(offset)} mm off in {int(left.sum())} "
-        f"of {left.size} runs, where balls are out of their pockets (half a play of "
-        f"{_three(1e3 * cage.half_play)} mm, a wall of at least {_three(most)} mm on either side): "
-        f"the land is too wide to guide it."
+        f"{said}, over {BEYOND_LAND:g} times what the land leaves it ({_three(1e3 * room(cage))} mm): {what} "
+        f"press it into the land with {force}, and the land's stiffness decides where it stays."
     )
 
 

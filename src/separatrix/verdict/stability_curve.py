@@ -90,7 +90,8 @@ _VALUES = (
 
 _REASONS = {
     Side.ABOVE: "{0:.0f} % of the runs from {1:g} m/s whirl even at zero pocket friction",
-    Side.BELOW: f"under {{0:.0f}} % of the runs from {{1:g}} m/s whirl at friction {SEARCHED_FRICTION:g}",
+    Side.BELOW: "under {0:.0f} % of the runs from {1:g} m/s whirl by friction in the pockets, at "
+    f"{SEARCHED_FRICTION:g}",
 }
 
 
