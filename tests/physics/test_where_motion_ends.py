@@ -11,6 +11,7 @@ from sane_studies import sane_study
 
 from separatrix import Judgement, StabilitySettings, Verdict, judge, read_study, solve
 from separatrix.cage import Cause, Ensemble, MovingCage, RunOutcome, moving_cage, run_ensemble
+from separatrix.cage import outcome as rules
 from separatrix.cage.closed_forms import drive_energy
 from separatrix.cage.disturbance import settings_for
 from separatrix.cage.outcome import LIMITS, end_of_motion
@@ -177,3 +178,25 @@ def test_a_cage_that_leaves_its_room_is_not_stable():
     assert np.isfinite(found.end_energy).all()
     assert found.largest_offset.min() > max(1e-3, largest_room(cage))
     assert judge(cage, found).verdict is not Verdict.STABLE
+
+
+@pytest.mark.parametrize(
+    ("energies", "looks", "end"),
+    [
+        *(((20.0, 20.0), 10, "WHIRLS"), ((40.0, 11.0), 10, "going on")),  # plain only if it does not fall
+        *(((2.0, 2.0), 50, "WHIRLS"), ((3.6, 1.2), 50, "SETTLES"), ((0.9, 0.9), 50, "SETTLES")),
+    ],
+)
+def test_what_friction_on_the_land_sustains_whirls(energies, looks, end):
+    """Above the drive energy and not falling: plain, or by the last fifth; below, the cage rubs."""
+    for fed, cause in ((rules.LAND, Cause.LAND_FRICTION), (rules.POCKET, Cause.NONE)):
+        seen = np.zeros((looks, 64))
+        seen[:, rules.ENERGY] = np.linspace(*energies, looks)
+        seen[:, fed] = 50.0  # which turns the energy over in each look
+        limits = np.zeros(LIMITS)
+        limits[[rules.DRIVE, rules.MOST]] = 1.0, 40.0
+        found = end_of_motion.py_func(seen, looks - 1, True, False, limits)
+        if end == "WHIRLS":
+            assert found == (RunOutcome.WHIRLS, cause)
+        elif cause is Cause.LAND_FRICTION:
+            assert found == ((RunOutcome.SETTLES, Cause.NONE) if end == "SETTLES" else (-1, Cause.NONE))
