@@ -47,9 +47,12 @@ def _of_verdict(row: Document, cage: Document) -> Iterator[str]:
         yield f"STABLE with a safety factor of at most {high}"
     if row["verdict"] == "UNSTABLE" and low is not None and low > 1.0:
         yield f"UNSTABLE with a safety factor of at least {low}"
-    is_by_land = 2 * worst["whirls_by_land"] > worst["whirls"] > 0.1 * row["runs"]
-    if row["verdict"] == "UNSTABLE" and low is None and not is_by_land and 2 * worst["whirls"] <= row["runs"]:
+    is_by_land = row["verdict"] == "UNSTABLE" and 2 * worst["whirls_by_land"] > worst["whirls"]
+    few = 0.1 * row["runs"] if is_by_land or (low is not None and low <= 1.0) else 0.5 * row["runs"]
+    if row["verdict"] == "UNSTABLE" and worst["whirls"] <= few:
         yield f"few whirl: {worst}"
+    if is_by_land and low is not None:
+        yield f"a safety factor from {low} with {worst}"
     if row["verdict"] != "STABLE":
         return
     room = max(cage["pocket_clearance"], cage["land_clearance"] or 0.0) / 2.0

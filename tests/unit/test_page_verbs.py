@@ -382,6 +382,15 @@ def test_the_headline_says_whether_uneven_orbits_decide(friction, count):
     assert [one.endswith(words) for one in said] == [True] * count
 
 
+def test_the_headline_names_a_land_that_drives_the_cage():
+    """And states neither that the pockets decide nor that a land so tight is not enough."""
+    driven = {"by_kick": [{"kick": 0.1, "whirls": 12, "whirls_by_land": 12}], "safety_factor_low": None}
+    row = Part(candidate("UNSTABLE").values | driven, {})
+    answer = Part(NO_EFFECT.values | {"cage": {"land_friction": 0.157}}, {})
+    said = "Phenolic: friction on the land, 0.157, and not in the pockets, drives the whirl."
+    assert [*deciding(answer, [row])] == [said]
+
+
 def test_heat_of_rubbing_has_the_digits_of_the_headline():
     """It was 10 W of heat below a headline of 10.5 W."""
     values = {"rubbing_force": 3.14, "rubbing_speed": 33.4, "rubbing_power": 10.49}
@@ -401,7 +410,7 @@ def test_a_cage_without_a_critical_friction_has_its_friction_placed(side, most):
     """A cage of 0.08 whirls at no friction up to 1, and the answer on it had no word of 0.08."""
     found = {"here": {"side": side}, "cage": {"ball_cage_friction": 0.08}, "units": {}}
     (said,) = friction_words(part_of(found | {"study": {"cage": {"ball_cage_friction": {"value": 0.08}}}}))
-    assert said == f"At the cage's friction, 0.08, as at any other, {most} than half of the runs whirl."
+    assert said.endswith(f", 0.08, as at any other, the pockets whirl {most} than half of the runs.")
 
 
 def test_a_cage_that_is_guided_has_no_drift_rate():

@@ -98,7 +98,7 @@ class History:
     pocket_rubbing: Annotated[Array, "J", ("ball",)]  # integral of force times sliding speed
     pocket_sliding: Watt  # mean of force times sliding speed in all pockets at the end
     outcome: RunOutcome  # SETTLES, ROLLS, WHIRLS, DRIFTS or UNRESOLVED
-    cause: Cause  # why the run is unresolved, or that friction on the land keeps it moving
+    cause: Cause  # why the run is unresolved, or that friction on the land drives its whirl
     judged_from: Second  # the last part of the run, by which it was judged
     followed: Second  # its end; the history may go on
     end_energy: Joule  # mean kinetic energy at the end

@@ -61,7 +61,7 @@ class Ensemble:
 
     kicks: Array  # speeds of the initial disturbances, shape (kick,) [m/s]
     outcome: Whole  # `RunOutcome`
-    cause: Whole  # `Cause` of a run that is unresolved, or that friction on the land keeps moving; else 0
+    cause: Whole  # `Cause` of a run that is unresolved, or that friction on the land whirls; else 0
     end_energy: Array  # mean kinetic energy at the end [J]
     growth_rate: Array
     """Half the logarithmic rate of the mean kinetic energy from half way to the last fifth; from the start in

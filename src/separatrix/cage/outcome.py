@@ -160,7 +160,7 @@ def end_by_last_fifth(looks, end, touched, settled, limits):
     if last <= limits[RESTING]:
         return settled, BY_NOTHING
     if land > 0.5 * put_in and pocket <= 0.0:
-        lasts = last > WEAK * limits[DRIVE] and stays(looks, end // 2, end)
+        lasts = land > last > WEAK * limits[DRIVE] and stays(looks, end // 2, end)
         return (WHIRLS, BY_LAND) if lasts else (settled, BY_NOTHING)
     friction = max(0.0, pocket) + max(0.0, land)
     is_fed = friction > 0.5 * put_in and friction > last

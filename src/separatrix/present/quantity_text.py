@@ -185,7 +185,7 @@ QUANTITIES: dict[str, Quantity] = {
         label="critical friction",
         head="critical",
         form=".3f",
-        meaning="friction at which half the runs whirl from the worst disturbance, on these races",
+        meaning="friction at which its pockets whirl half the runs, worst disturbance, on these races",
     ),
     "safety_factor": Q(
         label="safety factor", head="S", symbol="S", form=".2f", meaning="critical friction over friction"

@@ -81,7 +81,7 @@ def friction_words(answer: Part) -> Iterator[str]:
         return
     if "critical_friction" not in here:
         most = "fewer than half" if here.side == "BELOW" else "more than half"
-        yield f"At the cage's friction, {words}, as at any other, {most} of the runs whirl."
+        yield f"At the cage's friction, {words}, as at any other, the pockets whirl {most} of the runs."
         return
     low, high = here.get("critical_friction_low"), here.get("critical_friction_high")
     side = "within the band, in which the disturbance decides"

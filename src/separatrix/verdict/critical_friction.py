@@ -389,7 +389,7 @@ class CageLimit:
     """
 
     own_critical_friction: Ratio | None
-    """At which half the runs whirl, from the disturbance from which that is lowest."""
+    """At which it whirls half the runs, from the disturbance from which that is lowest."""
     own_critical_friction_low: Ratio  # of its 95 % interval, from the number of runs
     own_critical_friction_high: Ratio | None  # upper end of it
     critical_kick: MetrePerSecond  # disturbance from which the critical friction is lowest

@@ -83,6 +83,11 @@ class KickCount:
         """Runs that settle or roll."""
         return self.settles + self.rolls
 
+    @property
+    def is_by_land(self) -> bool:
+        """Whether friction on the land drives most of the runs that whirl."""
+        return 2 * self.whirls_by_land > self.whirls
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Judgement:
@@ -152,7 +157,7 @@ class Judgement:
     @property
     def is_by_land(self) -> bool:
         """Whether friction on the land, and not in the pockets, makes the cage unstable."""
-        return self.verdict is Verdict.UNSTABLE and 2 * self.worst.whirls_by_land > self.worst.whirls
+        return self.verdict is Verdict.UNSTABLE and self.worst.is_by_land
 
 
 def is_calm(outcome: NDArray[np.int64]) -> NDArray[np.bool_]:
@@ -322,7 +327,7 @@ def decide(
     at = worst(counts)
     count = counts[at]
     if is_mostly(count.whirls, count.runs) or is_taken_by_land(count):
-        return Verdict.UNSTABLE, reasons.whirls(cage, ensemble, at)
+        return Verdict.UNSTABLE, reasons.whirls(cage, ensemble, at, by_land=count.is_by_land)
     if wilson_interval(count.runs, count.runs)[0] <= FEW:
         return Verdict.UNDECIDED, reasons.too_few(count.runs)
     if not is_clear(count.calm + count.drifts, count.runs):
@@ -352,7 +357,7 @@ def whirls_too_often(count: KickCount) -> bool:
 
 def is_taken_by_land(count: KickCount) -> bool:
     """Whether more runs whirl than a stable cage may have, and friction on the land drives most of these."""
-    return whirls_too_often(count) and 2 * count.whirls_by_land > count.whirls
+    return whirls_too_often(count) and count.is_by_land
 
 
 def is_clear(count: int, runs: int) -> bool:

@@ -15,7 +15,7 @@ from scipy.special import expit, ndtri
 from separatrix.cage.disturbance import settings_for
 from separatrix.cage.ensemble import Ensemble
 from separatrix.cage.moving_cage import moving_cage
-from separatrix.cage.outcome import RunOutcome
+from separatrix.cage.outcome import Cause, RunOutcome
 from separatrix.chain.slip_work import track_work
 from separatrix.chain.solution import Solution, solve
 from separatrix.ground.errors import InputError, together
@@ -381,8 +381,12 @@ def _node(solution: Solution, settings: StabilitySettings, runner: Runner) -> No
 
 
 def _mean(found: Ensemble, *, whirls: bool) -> tuple[Watt, Watt]:
-    """Mean work of pockets and of lands in the runs that whirl, or settle; in all where none does."""
-    kind = found.outcome == RunOutcome.WHIRLS if whirls else is_calm(found.outcome)
+    """Mean work of pockets and of lands in the runs that whirl, or do not; in all where none does.
+
+    A whirl that the land drives is none of the pockets, whose critical friction decides here.
+    """
+    is_whirl = (found.outcome == RunOutcome.WHIRLS) & (found.cause != Cause.LAND_FRICTION)
+    kind = is_whirl if whirls else is_calm(found.outcome) | (found.cause == Cause.LAND_FRICTION)
     each = kind if kind.any() else np.ones_like(kind)
     works = found.pocket_sliding, found.rubbing_force * found.rubbing_speed
     return float(works[0][each].mean()), float(works[1][each].mean())

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -10,7 +11,7 @@ from separatrix.cage.ensemble import Runs
 from separatrix.cage.moving_cage import moving_cage
 from separatrix.chain.solution import Solution
 from separatrix.ground.units import Newton, Ratio, Second
-from separatrix.study.study import StabilitySettings
+from separatrix.study.study import BallModel, StabilitySettings
 from separatrix.verdict import reasons
 from separatrix.verdict.judgement import (
     Judgement,
@@ -30,7 +31,7 @@ unless `duration` itself is longer."""
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LongLook:
-    """Runs of a cage from the reference disturbance, followed for long."""
+    """Runs of a cage from a disturbance, followed for long."""
 
     friction: Ratio  # in its pockets
     duration: Second  # for which they were followed, all of it
@@ -45,19 +46,26 @@ class LongLook:
 
 
 def long_look(
-    solution: Solution, friction: Ratio, settings: StabilitySettings, runner: Runner, runs: int
+    solution: Solution,
+    friction: Ratio,
+    settings: StabilitySettings,
+    runner: Runner,
+    runs: int,
+    ball: BallModel | None = None,
 ) -> LongLook | None:
-    """Follow runs from the reference disturbance, whose end is that of their last fifth; None without a land.
+    """Follow runs from a disturbance, whose end is that of their last fifth; None without a land.
 
-    What drives a cage round its land is friction there, while its pockets take energy: so the candidate of
-    least friction shows whether the others on that land need a look of their own.
+    It is that of the settings nearest to their reference. What drives a cage round its land is friction
+    there, while its pockets take energy: so the candidate of least friction shows whether the others need a
+    look of their own.
     """
-    cage = moving_cage(solution, friction)
+    cage = moving_cage(solution, friction, ball)
     if np.isinf(cage.land_gap) or cage.land_friction == 0.0:
         return None
     time = max(settings.duration, min(LONGER * settings.duration, LONGEST))
     for_long = replace(settings, duration=time)
-    found = runner.ensemble_of([Runs(cage, for_long, 0, runs, whole=True)], (settings.middle_kick,))
+    kick = min(settings.kicks, key=lambda one: abs(math.log(one / settings.middle_kick)))
+    found = runner.ensemble_of([Runs(cage, for_long, 0, runs, whole=True)], (kick,))
     return LongLook(
         friction=friction,
         duration=float(found.followed.max()),
@@ -71,19 +79,23 @@ def seen_for_longer(judgement: Judgement, first: LongLook | None, own: LongLook 
     """The judgement of a stable cage after a long look: `own`, where the `first`, at another, asks for it.
 
     Its runs then stand for those from their disturbance. UNSTABLE if its land surely takes over more than a
-    tenth of them, UNDECIDED if it does so by their count alone, or while there is none of its own.
+    tenth of them, UNDECIDED if it does so by their count alone, or while there is none of its own. The
+    medians of the evidence stay those of the shorter runs.
     """
     if first is None or first.is_clear or judgement.verdict is not Verdict.STABLE:
         return judgement
     if own is None:
         return replace(judgement, verdict=Verdict.UNDECIDED, reason=first.reason)
     counts = tuple(own.count if one.kick == own.count.kick else one for one in judgement.by_kick)
-    verdict = Verdict.STABLE if own.is_clear else Verdict.UNDECIDED
-    at = counts[worst(counts)]
+    at = own.count if is_taken_by_land(own.count) else counts[worst(counts)]
+    is_stable = is_clear(at.calm, at.runs)
+    verdict = Verdict.STABLE if is_stable else Verdict.UNDECIDED
     return replace(
         judgement,
         verdict=Verdict.UNSTABLE if is_taken_by_land(own.count) else verdict,
-        reason=f"{judgement.reason} {own.reason}" if own.is_clear else own.reason,
+        reason=f"{judgement.reason} {own.reason}" if is_stable else own.reason,
+        largest_land_force=max(judgement.largest_land_force, own.largest_land_force),
+        longest_run=own.duration,
         by_kick=counts,
         worst_kick=at.kick,
         probability_stable=at.probability_stable,

@@ -21,7 +21,7 @@ from separatrix.study.candidates import (
     reference_candidate,
     required_environment,
 )
-from separatrix.study.study import RankingQuestion, StabilitySettings, Study
+from separatrix.study.study import BallModel, RankingQuestion, StabilitySettings, Study
 from separatrix.verdict.beyond_models import (
     NOT_FINISHED,
     PAPER_STATEMENT,
@@ -113,6 +113,7 @@ class Longer:
     pocket: Pocket
     friction: Ratio
     runs: int
+    is_free: bool = False  # among free balls
 
 
 Piece = Asked | Knot | Limit | Longer | Case
@@ -143,7 +144,7 @@ class _Question:
     drawn: DrawnBearings | None
     keys: Sequence[Asked]  # of all verdicts by the study's model
     beside: Sequence[Asked]  # of those by the paper's, in the bearing's own environment
-    longer: Longer | None  # of the least friction in the bearing's own environment; None in the paper's model
+    longer: Longer | None  # of the least friction in any environment; None in the paper's model
     runner: Runner
 
     @property
@@ -262,7 +263,7 @@ def _question(
     every = {(pockets[n], f.mean) for table in tables for n, f in table.items() if f is not None}
     keys = [Asked(*each) for each in sorted(every)]
     own = sorted({Asked(pockets[n], f.mean, True) for n, f in tables[0].items() if f is not None})
-    least = min(own, key=lambda one: one.friction) if own and not is_paper else None
+    least = min(keys, key=lambda one: one.friction) if keys and not is_paper else None
     paper_cages = {pocket: moving_cage(one, 0.0) for pocket, one in paper.items()}
     drawn = drawn_bearings(study, study.stability.runs) if study.distributions else None
     spreads = {}
@@ -300,11 +301,11 @@ def _longer(question: _Question, found: Findings) -> list[Longer]:
     if first is None or first.is_clear:
         return []
     stable = [key for key in question.keys if key in found and found[key].verdict is Verdict.STABLE]
-    return [_own_look(question, key) for key in stable]
+    return [_own_look(question, key, found[key]) for key in stable]
 
 
-def _own_look(question: _Question, key: Asked) -> Longer:
-    return Longer(key.pocket, key.friction, question.settings.runs)
+def _own_look(question: _Question, key: Asked, judgement: Judgement) -> Longer:
+    return Longer(key.pocket, key.friction, question.settings.runs, judgement.ball == "free")
 
 
 def _limits(question: _Question, found: Findings) -> list[Limit]:
@@ -386,7 +387,8 @@ def _computed(question: _Question, piece: Piece) -> object:
         change = question.effects[piece.effect].values
         return cage_limit(solution, few, runner, highest=highest, change=change)
     if isinstance(piece, Longer):
-        return long_look(question.cages[piece.pocket], piece.friction, settings, runner, piece.runs)
+        solution, ball = question.cages[piece.pocket], BallModel.FREE if piece.is_free else None
+        return long_look(solution, piece.friction, settings, runner, piece.runs, ball)
     solved = question.paper if piece.is_paper else question.cages
     run = partial(runner.whole_ensemble, settings=settings)
     return judge_solution(solved[piece.pocket], piece.friction, run)
@@ -457,7 +459,7 @@ def _row(
     if broken := not_finite(judgement):
         return NotFinished(**values, reason=broken)
     first = found.get(question.longer) if question.longer else None
-    judgement = seen_for_longer(judgement, first, found.get(_own_look(question, key)))
+    judgement = seen_for_longer(judgement, first, found.get(_own_look(question, key, judgement)))
     values["judgement"] = judgement = beyond_critical(in_a_window(judgement, values), values)
     if judgement.is_by_land:
         values |= asdict(SafetyFactor())
@@ -504,7 +506,7 @@ def beyond_critical(judgement: Judgement, safety: Mapping[str, Any]) -> Judgemen
     is_beyond |= (
         high < 1.0 and is_mostly(count.runs, count.runs) and count.whirls > (1.0 - CLEAR) * count.runs
     )
-    if judgement.verdict is not Verdict.UNDECIDED or not is_beyond:
+    if judgement.verdict is not Verdict.UNDECIDED or count.is_by_land or not is_beyond:
         return judgement
     critical = format_number(safety["own_critical_friction"], 3)
     said = f"Of {count.runs} runs from {count.kick:g} m/s {ends(count)}, and half whirl at a friction of "

@@ -50,8 +50,8 @@ class MeasuredCandidate:
     land_clearance: Metre | None  # running, diametral; null without a land
     restitution_factor: Ratio  # of the chain with its pocket
     own_critical_friction: Ratio | None = None
-    """At which half the runs whirl from the worst disturbance, with its own race damping; null in the paper's
-    model, and where no friction that was searched is enough."""
+    """At which pockets whirl half the runs from the worst disturbance, by its own race damping; null in the
+    paper's model, and where no friction that was searched is enough."""
     own_critical_friction_low: Ratio | None = None  # of its 95 % interval, from the number of runs
     own_critical_friction_high: Ratio | None = None  # upper end of it
     critical_kick: MetrePerSecond | None = None  # disturbance from which the critical friction is lowest
@@ -235,10 +235,13 @@ def same_rank(
     """Whether a row and the leader of its group do not differ beyond their scatter.
 
     Of one cage the order is that of frictions, whatever its critical friction or curve is, so frictions
-    decide; with another pocket the intervals of safety factors or margins decide.
+    decide; with another pocket the intervals of safety factors or margins decide. One that its land makes
+    unstable ties with none that it does not.
     """
     if interval(row)[0] == interval(leader)[0]:
         return True
+    if row.judgement.is_by_land != leader.judgement.is_by_land:
+        return False
     if all(getattr(row, name) == getattr(leader, name) for name in POCKET):
         return may_be_lower(known[row.name], known[leader.name])
     return meet(interval(row), interval(leader))
@@ -247,8 +250,10 @@ def same_rank(
 def safety_interval(row: Ranked) -> Interval:
     """Safety factor with the ends of its interval; infinite of a friction of 0, 0 where the land drives."""
     low, high = row.safety_factor_low, row.safety_factor_high
+    if row.judgement.is_by_land:
+        return 0.0, 0.0, 0.0
     if low is None:
-        return (inf, inf, inf) if row.friction == 0.0 else (0.0, 0.0, 0.0)
+        return inf, inf, inf
     value = low if row.safety_factor is None else row.safety_factor
     return value, low, inf if high is None else high
 

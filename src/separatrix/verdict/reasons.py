@@ -45,7 +45,7 @@ CAUSES = {
     Cause.LEFT_POCKET: "a ball reaches the edge of its pocket's wall; check [cage] diameters and clearances",
     Cause.NO_CONTACT: "nothing touches; raise [stability] duration or kicks",
     Cause.FALLING: "the motion still loses energy at the end; raise [stability] duration",
-    Cause.LAND_FRICTION: "friction on the land, not in the pockets, keeps the cage moving",
+    Cause.LAND_FRICTION: "friction on the land, not in the pockets",
     Cause.NOT_FINITE: "the motion leaves the range of numbers; lower [stability] kicks or the stiffnesses",
 }
 
@@ -60,9 +60,7 @@ def outcome_sentence(history: History, *, limit: Newton | None, rubbing_power: W
     if outcome is RunOutcome.SETTLES and history.rubbing_force > 0.0:
         said = "Friction in the pockets does not sustain the motion; the cage moves on its land."
     if history.cause is Cause.LAND_FRICTION:
-        said = "The motion lasts: friction on the land, not in the pockets, keeps the cage moving."
-        if outcome is RunOutcome.WHIRLS:
-            said = "Friction on the land, not in the pockets, makes the motion grow without limit."
+        said = "Friction on the land, not in the pockets, sustains the motion, or makes it grow."
     if history.cause is Cause.LEFT_POCKET:
         when = format_quantity(history.left_time, "s", 3)
         said = f"Ball {history.left_ball} reaches the edge of its pocket's wall at {when}: the model ends."
@@ -134,14 +132,17 @@ def driven_by_land(ensemble: Ensemble) -> Mask:
 
 def left_pockets(cage: MovingCage, ensemble: Ensemble) -> Mask:
     """Runs whose centre ended out of the pockets, or pressed far into the land, shape (kick, run)."""
-    return np.asarray(
-        ensemble.mean_offset > min(in_pockets(cage), BEYOND_LAND * max(cage.land_gap, cage.half_play))
-    )
+    return np.asarray(ensemble.mean_offset > min(in_pockets(cage), on_land(cage)))
 
 
 def in_pockets(cage: MovingCage) -> Metre:
     """Offset beyond which balls are out of their pockets [m]."""
     return max(LEFT * cage.half_play, IN_WALL * cage.ball_diameter) if cage.half_play > 0.0 else math.inf
+
+
+def on_land(cage: MovingCage) -> Metre:
+    """Offset beyond which a cage at rest is pressed far into its land [m]; of wider pockets, theirs."""
+    return BEYOND_LAND * max(cage.land_gap, cage.half_play) or math.inf
 
 
 def largest_room(cage: MovingCage) -> Metre:
@@ -178,7 +179,7 @@ def settles(cage: MovingCage, ensemble: Ensemble, kick: int) -> str:
     return f"{said}.{few_driven(cage, ensemble)}{few_left(ensemble)}"
 
 
-def whirls(cage: MovingCage, ensemble: Ensemble, kick: int) -> str:
+def whirls(cage: MovingCage, ensemble: Ensemble, kick: int, *, by_land: bool) -> str:
     """Return what share whirls from the worst kick, how fast, and what friction feeds it."""
     whirling = ensemble.outcome[kick] == RunOutcome.WHIRLS
     pace = float(np.median(ensemble.whirl_frequency[kick][whirling]))
@@ -189,16 +190,10 @@ def whirls(cage: MovingCage, ensemble: Ensemble, kick: int) -> str:
     if not power.size:
         return f"{first}; the energy passes {GROWN:g} times that of disturbance and frame."
     what, force = "friction", ""
-    if _fed_by_land(ensemble, kick):
+    if by_land:
         what = f"friction on the land, {cage.land_friction:g}, and not in the pockets,"
         force = f", with up to {_three(ensemble.largest_land_force[kick][whirling].max())} N there"
     return f"{first}; {what} feeds the cage {_watt(float(np.median(power)))}{force}."
-
-
-def _fed_by_land(ensemble: Ensemble, kick: int) -> bool:
-    """Whether the land, more than the pockets, feeds most of the runs that whirl from the kick."""
-    causes = ensemble.cause[kick][ensemble.outcome[kick] == RunOutcome.WHIRLS]
-    return bool(2 * np.count_nonzero(causes == Cause.LAND_FRICTION) > causes.size)
 
 
 def not_finite(ensemble: Ensemble) -> str:
@@ -228,10 +223,9 @@ def mixed(ensemble: Ensemble, counts: tuple[KickCount, ...], kick: int, *, is_su
             seen = _first_left(ensemble)
         return f"Of {count.runs} runs from {count.kick:g} m/s {said}: {CAUSES[most]} ({seen})."
     if is_sure:
-        which = " on the land" if _fed_by_land(ensemble, kick) else ""
         return (
             f"The start decides: of {count.runs} runs from {count.kick:g} m/s {said}; more runs would not "
-            f"change that, less friction{which} would."
+            "change that, less friction would."
         )
     cure = "more may decide: raise [stability] runs"
     return f"No clear answer from {count.kick:g} m/s: of {count.runs} runs {said}; {cure}."
@@ -256,18 +250,18 @@ def _first_left(ensemble: Ensemble) -> str:
 def taken_by_land(cage: MovingCage, ensemble: Ensemble) -> str:
     """Return how many runs that were followed for long whirl round the land in the end, and how hard."""
     taken = driven_by_land(ensemble)
-    time, runs = _three(ensemble.followed.max()), f"{int(taken.sum())} of {taken.size} runs"
+    at = f"Followed for {_three(ensemble.followed.max())} s at a friction of {cage.ball_cage_friction:g}"
+    said = f"{at}, {int(taken.sum())} of {taken.size} runs end whirling round the land"
     if not taken.any():
-        return f"Followed for {time} s, {runs} whirl round the land."
+        return f"{said}."
     return (
-        f"Followed for {time} s, {runs} end whirling round the land: "
-        f"{_lively(ensemble, taken)}. Friction there, {cage.land_friction:g}, and not in the pockets, drives "
-        "that; check [cage] land_friction."
+        f"{said}: {_lively(ensemble, taken)}. Friction there, {cage.land_friction:g}, and not in the "
+        "pockets, drives that; check [cage] land_friction."
     )
 
 
 def few_driven(cage: MovingCage, ensemble: Ensemble) -> str:
-    """Return the same for the few runs of a stable cage; empty if there is none."""
+    """Return how many runs of a stable cage whirl round the land, and how hard; empty if there is none."""
     driven = driven_by_land(ensemble)
     if not driven.any():
         return ""
@@ -286,18 +280,16 @@ def _lively(ensemble: Ensemble, runs: Mask) -> str:
 
 def out_of_pockets(cage: MovingCage, ensemble: Ensemble, left: Mask) -> str:
     """Return how far off the centre ends, and whether its balls are out or its land is pressed in."""
-    offset, most = float(ensemble.mean_offset[left].max()), in_pockets(cage)
+    offset = float(ensemble.mean_offset[left].max())
     said = f"The motion settles, but the cage centre ends up to {_three(1e3 * offset)} mm off in "
-    said += f"{int(left.sum())} of {left.size} runs"
-    if offset > most:
-        wall = f"half a wall of {_three(1e3 * most)} mm at least"
-        return f"{said}, where its balls are out of their pockets ({wall}): the land is too wide to guide it."
+    said += f"{int(left.sum())} of {left.size} runs, more than"
+    if offset > in_pockets(cage):
+        wall = f"{_three(1e3 * in_pockets(cage))} mm, where balls are out of their pockets"
+        return f"{said} {wall}: the land is too wide to guide it."
     force = format_quantity(median(ensemble.rubbing_force[left]), "N", 3)
-    what = (
-        "its balls, which lead and lag under radial load or moment," if cage.orbital_cosines else "its motion"
-    )
+    what = "balls that lead and lag under radial load or moment" if cage.orbital_cosines else "its motion"
     return (
-        f"{said}, over {BEYOND_LAND:g} times what the land leaves it ({_three(1e3 * room(cage))} mm): {what} "
+        f"{said} {_three(1e3 * on_land(cage))} mm, {BEYOND_LAND:g} times what land and pockets leave: {what} "
         f"press it into the land with {force}, and the land's stiffness decides where it stays."
     )
 

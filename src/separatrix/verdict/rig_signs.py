@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from separatrix.cage import Cause, History, MovingCage, RunOutcome
+from separatrix.cage import History, MovingCage, RunOutcome
 from separatrix.chain.heat_balance import HeatBalance, heat_balance
 from separatrix.chain.solution import Solution
 from separatrix.ground.units import Hertz, NewtonMetre, RadianPerSecond, Ratio, Watt
@@ -50,8 +50,8 @@ Followed = tuple[Solution, MovingCage, History]
 
 
 def lasts(history: History) -> bool:
-    """Whether a motion lasts: it whirls, rolls in its pockets, or is kept up by the land."""
-    return history.outcome in (RunOutcome.WHIRLS, RunOutcome.ROLLS) or history.cause is Cause.LAND_FRICTION
+    """Whether a motion lasts: it whirls, or rolls in its pockets."""
+    return history.outcome in (RunOutcome.WHIRLS, RunOutcome.ROLLS)
 
 
 def slower(solution: Solution) -> Solution:

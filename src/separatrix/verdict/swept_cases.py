@@ -104,10 +104,16 @@ LOWEST = ("safety_factor", "margin", "probability_stable")
 
 
 def worst_case(cases: Iterable[SweptCase]) -> WorstCase | None:
-    """Return the worst case, the first of those that are alike; None where no case has an answer."""
+    """Return the worst case, the first of those that are alike; None where no case has an answer.
+
+    A case that its land makes unstable has a safety factor of 0 here.
+    """
     known = list(cases)
     for quantity, sign in (*((name, 1.0) for name in LOWEST), ("restitution_factor", -1.0)):
-        found = [(sign * value, one.case) for one in known if (value := getattr(one, quantity)) is not None]
+        values = ((getattr(one, quantity), one) for one in known)
+        found = [(sign * value, one.case) for value, one in values if value is not None]
+        if quantity == "safety_factor":
+            found += [(0.0, one.case) for one in known if one.is_by_land]
         if found:
             value, case = min(found)
             alike = sum(math.isclose(one, value, rel_tol=ROUNDING) for one, _ in found)
@@ -180,7 +186,8 @@ class SweptCase:
     own_critical_friction: Ratio | None = None  # in the full model, in place of a threshold
     own_critical_friction_low: Ratio | None = None  # of its 95 % interval
     own_critical_friction_high: Ratio | None = None  # upper end of it
-    safety_factor: Ratio | None = None  # critical friction over friction; null as the critical friction is
+    safety_factor: Ratio | None = None
+    """Critical friction over friction; null as the critical friction is, and where the land drives it."""
     safety_factor_low: Ratio | None = None  # of its 95 % interval
     safety_factor_high: Ratio | None = None  # upper end of it
     verdict: str | None = None  # STABLE, UNSTABLE or UNDECIDED
@@ -199,10 +206,18 @@ class SweptCase:
     reason: str = ""  # why the case was refused; empty if it was not
 
     @property
+    def is_by_land(self) -> bool:
+        """Whether its land makes it unstable: it has a critical friction, and no safety factor."""
+        has_limit = self.own_critical_friction_low is not None
+        return self.verdict == "UNSTABLE" and has_limit and self.safety_factor_low is None
+
+    @property
     def is_below_margin(self) -> bool | None:
         """Whether safety factor or margin say that the cage whirls; None where neither was computed."""
         if self.margin is not None:
             return self.margin < 0.0
+        if self.is_by_land:
+            return True
         least = self.safety_factor_low if self.safety_factor is None else self.safety_factor
         return None if least is None else least < 1.0
 

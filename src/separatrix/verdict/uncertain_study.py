@@ -273,7 +273,8 @@ def is_plain(judged: Judgement) -> bool:
     worst = next(count for count in judged.by_kick if count.kick == judged.worst_kick)
     if judged.verdict is Verdict.STABLE:
         return all(wilson_interval(one.calm, one.runs, NORMAL)[0] >= CLEAR for one in judged.by_kick)
-    return judged.verdict is Verdict.UNSTABLE and wilson_interval(worst.whirls, worst.runs, NORMAL)[0] > FEW
+    few = 1.0 - CLEAR if judged.is_by_land else FEW
+    return judged.verdict is Verdict.UNSTABLE and wilson_interval(worst.whirls, worst.runs, NORMAL)[0] > few
 
 
 def settles(found: Ensemble, judged: Judgement) -> Array:

@@ -160,15 +160,15 @@ def _safety(first: Sequence[Part]) -> str:
 def deciding(answer: Part, rows: Sequence[Part]) -> Iterator[str]:
     """Yield what decides a ranking besides frictions: inputs, the land, a weak whirl, extrapolation."""
     known = [row for row in rows if judged(row)]
+    if driven := [row.name for row in known if is_by_land(row)]:
+        friction = f"friction on the land, {answer.cage.land_friction:g}, and not in the pockets"
+        yield f"{', '.join(driven)}: {friction}, drives the whirl."
     if not known or not has_safety(known):
         return
     drawn = [(row.get("uncertain_verdict"), row.name, row.verdict) for row in known]
     if others := [(verdict, name) for verdict, name, mean in drawn if verdict not in (None, mean)]:
         yield f"That is at the means of the uncertain inputs; with them drawn: {by_verdict(others)}."
     best = known[0]
-    if driven := [row.name for row in known if is_by_land(row)]:
-        friction = f"friction on the land, {answer.cage.land_friction:g}, and not in the pockets"
-        yield f"{', '.join(driven)}: {friction}, drives the whirl."
     undriven = [row for row in known if row.get("own_critical_friction") == 0.0]
     if undriven and best.get("own_critical_friction") != 0.0:
         yield f"{', '.join(row.name for row in undriven)}: {without_friction(undriven)}."
@@ -182,7 +182,7 @@ def deciding(answer: Part, rows: Sequence[Part]) -> Iterator[str]:
         critical = wide.get("own_critical_friction") or wide.own_critical_friction_low
         words = f"With {wide.change} the critical friction of {answer.candidate} would be "
         words += fill(wide, "{own_critical_friction}")
-        whirling = [row.name for row in known if row.verdict != "STABLE"]
+        whirling = [row.name for row in known if row.verdict != "STABLE" and row.name not in driven]
         above = [row.name for row in known if row.friction > critical and row.name not in whirling]
         at_most, wide_at_most = (
             inf if (high := one.get("own_critical_friction_high")) is None else high for one in (own, wide)
@@ -197,7 +197,9 @@ def deciding(answer: Part, rows: Sequence[Part]) -> Iterator[str]:
             steadies = "is not enough for " + ", ".join(whirling) if whirling else steadies
             whose = f", less than the friction of {', '.join(above)}" if above else ""
             yield f"The land stops the cage before its pockets do ({both}), which {steadies}. {words}{whose}."
-    elif best.get("land_clearance") is not None and any(row.verdict != "STABLE" for row in known):
+    elif best.get("land_clearance") is not None and any(
+        row.verdict != "STABLE" and row.name not in driven for row in known
+    ):
         words = "The pockets decide, not the land (clearances {pocket_clearance}, {land_clearance})."
         yield fill(best, words)
     most = even.get("own_critical_friction_high") if even is not None else None
