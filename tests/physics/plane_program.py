@@ -47,10 +47,9 @@ def outline(cage: MovingCage) -> tuple[float, float, float]:
 
 
 class Plane:
-    """Equations of a cage and its balls.
+    """Equations of a cage and its balls."""
 
-    State: centre of mass, its velocity, angle and spin of the cage, leads, and speeds of balls of one state.
-    """
+    # State: centre, its velocity, angle and spin of the cage, leads, and speeds of balls of one state.
 
     def __init__(self, cage: MovingCage) -> None:
         self.cage, self.at = cage, np.exp(1j * np.array(cage.ball_angles))

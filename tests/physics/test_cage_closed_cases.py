@@ -301,10 +301,8 @@ def dead(balls: int, friction: float) -> MovingCage:
 
 
 def growth(balls: int, friction: float) -> float:
-    """Growth of the logarithm of the speed in a turn of its direction, over the whole turns of 0.5 s.
-
-    Later a growing one would be so fast that its impacts are no longer short.
-    """
+    """Growth of the logarithm of the speed in a turn of its direction, over the whole turns of 0.5 s."""
+    # Later a growing one would be so fast that its impacts are no longer short.
     found = followed(dead(balls, friction), 0.5, kick=3.0, samples=10_000)
     speed = found.velocity @ [1.0, 1j]
     turned = np.unwrap(np.angle(speed)) / (2.0 * math.pi)

@@ -47,10 +47,8 @@ PLANE = [  # G_f/G, nu_f and the slope over its bare value at h/b = 0.03, 0.1, 0
 
 
 def cauchy_slope(coated, n=160):
-    """Sticking force of a plane layer on a bare equal base, by the singular integral equation of its slope.
-
-    Weight sqrt((1 - s)/(1 + s)): no traction at the leading edge; kernel from the flexibility, no images.
-    """
+    """Sticking force of a plane layer on an equal bare base: the singular integral equation of its slope."""
+    # Weight sqrt((1 - s)/(1 + s)): no traction at the leading edge; kernel from the flexibility, no images.
     base = body(0.285)
     k_nodes, k_weights = np.polynomial.legendre.leggauss(60)
     h = coated.layers[0].thickness

@@ -173,10 +173,8 @@ def test_races_hold_a_ball_of_less_load_less():
 @pytest.mark.parametrize("share", [1.0, 0.3])
 @pytest.mark.parametrize("study", ["cryogenic-turbopump", "momentum-wheel"])
 def test_spins_are_held_by_the_slopes_of_the_races(study, share):
-    """Inverse of I - h J/4 about free rolling: J but for gyroscopic terms and couplings of the spin ahead.
-
-    To 5e-3 of the largest slope, 3.5e-3 measured: what the spin's slip across adds is left out as well.
-    """
+    """Inverse of I - h J/4 about free rolling: J but for gyroscopic terms and couplings of the spin ahead."""
+    # To 5e-3 of the largest slope, 3.5e-3 measured: what the spin's slip across adds is left out as well.
     cage = moving_cage(solve(read_study(study)), 0.1, BallModel.FREE)
     p = np.repeat(numbers_of(cage, 0.1, 0.3).numbers, LANES)
     s, places, found = np.zeros(rows.SPACE_STATES), np.zeros((1, rows.BALL_ROWS)), np.zeros((1, 10 * LANES))

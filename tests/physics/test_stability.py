@@ -159,9 +159,7 @@ def energy_over_kick(eta, friction, chi):
     [(12.1, 0.6, 0.82, 0.97), (12.1, 0.3, 0.82, 0.97), (121.0, 0.8, 0.94, 1.05), (121.0, 0.3, 0.94, 1.05)],
 )
 def test_strong_kicks_meet_the_linear_law_from_below(chi, eta, dies, grows):
-    """Harmonic balance has 0.88 of the limit at chi of 12, 0.988 at 121: all shrink below it, all grow above.
-
-    At 12 the play takes a fifth of the pockets' stiffness, and the linear law goes with its root.
-    """
+    """Harmonic balance has 0.88 of the limit at chi of 12, 0.988 at 121: smaller below, larger above."""
+    # At 12 the play takes a fifth of the pockets' stiffness, and the linear law goes with its root.
     assert np.all(energy_over_kick(eta, dies * linear(eta), chi) < 0.5)
     assert np.all(energy_over_kick(eta, grows * linear(eta), chi) > 2.0)

@@ -113,7 +113,6 @@ ALL = f"traction mobility {CAGES}"
         (SHIPPED, (WARM,), "\n[cooling]\nswirl = 0.4\n", "bearing simulate", NO_DENSITY),
         (SHIPPED, BARE, "\n[wear]\nbare_friction = 0.3\n", "life", "is missing: bare races have no film"),
     ],
-    ids=["no equilibrium", "soft film", "no clearances", "unknown fluid", "no film that wears"],
 )
 def test_check_says_what_will_be_refused(tmp_path, shipped, edits, more, verbs, words):
     """In the words of the verb itself, before anything is run."""

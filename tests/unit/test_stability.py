@@ -170,7 +170,6 @@ def test_a_crossing_far_from_every_count_is_counted_at():
         # between nothing and the first step of the ladder
         (lambda f: float(f > 0.0), 96, 0.1, (0.0, 0.0), (LADDER[1],) * 2),
     ],
-    ids=["far from the guess", "up to 1", "a jump in a cell", "below the ladder"],
 )
 def test_an_interval_ends_where_runs_were_counted(probability, runs, guess, low, high):
     """A crossing whose interval is bounded by the places at which P is known."""
@@ -187,7 +186,6 @@ def test_an_interval_ends_where_runs_were_counted(probability, runs, guess, low,
         (lambda _: 0.2, 0.1, Side.BELOW),
         (lambda f: 0.9 - 0.8 * f, 0.9, Side.ABOVE),
     ],
-    ids=["above", "below", "falls again"],
 )
 def test_without_a_crossing_the_side_is_told(probability, guess, side):
     """P that never rises through one half lies above or below it; nothing is extrapolated or inverted."""

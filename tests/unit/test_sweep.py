@@ -91,7 +91,6 @@ def test_a_bearing_without_a_cage_can_be_swept():
         ([{"cage.colour": 0.5}], "cage.colour is not a numeric input"),
         ([{"cage.mass": 0.01}, {"cage.pocket_clearance": 0.01}], "Case 1 must give cage.mass"),
     ],
-    ids=["none", "too many", "kick", "unknown", "other names"],
 )
 def test_what_is_no_list_of_cases_is_refused(cases, rule):
     """In the words of the mistake."""
