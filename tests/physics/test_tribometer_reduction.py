@@ -89,6 +89,7 @@ def test_an_excess_that_is_over_is_seldom_told_not_to_end():
 @pytest.mark.parametrize(
     "excess",
     [lambda x: np.exp(-2.0 * x), lambda x: np.maximum(0.0, 1.0 - x / 0.9)],
+    ids=["exponential", "straight"],
 )
 def test_an_excess_that_goes_on_is_told(excess):
     """A slow exponential, and a straight fall of nine tenths of the test: eight of ten logs say so."""

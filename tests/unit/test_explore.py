@@ -84,7 +84,7 @@ def test_a_separation_by_one_input_stays_finite():
     assert abs(b[2]) < 2.0
 
 
-Judged = make_dataclass("Judged", ("verdict", "by_kick", "worst_kick"))
+Judged = make_dataclass("Judged", ("verdict", "by_kick", "worst_kick", "is_by_land"))
 """What counting reads of a judgement."""
 
 
@@ -98,7 +98,7 @@ def judged(verdict, *settles, runs=64):
         for i, one in enumerate(ends)
     )
     worst = min(found, key=lambda one: one.calm)
-    return Judged(verdict, found, worst.kick)
+    return Judged(verdict, found, worst.kick, False)
 
 
 @pytest.mark.parametrize(

@@ -206,6 +206,7 @@ def test_white_noise_of_few_spans_seldom_passes_for_a_long_correlation():
         ("normal_force", lambda t: 1.0 + 0.00022 * t, ""),  # 8.1 % between the middles of the first and last
         ("temperature", lambda t: 295.0 + 0.045 * t, ""),  # 16.5 K
     ],
+    ids=["step", "late step", "warming", "strokes", "noise", "slow rise", "less warming"],
 )
 def test_a_condition_that_changes_in_the_steady_part_is_reported(name, column, words):
     """More than a tenth, or 20 K; neither strokes nor noise nor a little less."""
