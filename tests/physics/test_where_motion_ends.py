@@ -179,16 +179,17 @@ def test_a_cage_that_leaves_its_room_is_not_stable():
 
 
 @pytest.mark.parametrize(
-    ("first", "last", "looks", "end"),
+    ("first", "last", "looks", "fed", "end"),
     [
-        *((20.0, 20.0, 10, (1, 5)), (40.0, 11.0, 10, (-1, 0))),  # plain only if it does not fall
-        *((2.0, 2.0, 50, (1, 5)), (3.6, 1.2, 50, (0, 0)), (0.9, 0.9, 50, (0, 0))),
+        *((20.0, 20.0, 10, 50.0, (1, 5)), (40.0, 11.0, 10, 50.0, (-1, 0))),  # plain only if it does not fall
+        *((2.0, 2.0, 50, 50.0, (1, 5)), (3.6, 1.2, 50, 50.0, (0, 0)), (0.9, 0.9, 50, 50.0, (0, 0))),
+        *((2.0, 2.0, 50, 0.21, (1, 5)), (2.0, 2.0, 50, 0.19, (0, 0))),  # ten looks have to turn it over
     ],
 )
-def test_what_friction_on_the_land_sustains_whirls(first, last, looks, end):
+def test_what_friction_on_the_land_sustains_whirls(first, last, looks, fed, end):
     """Above the drive energy and not falling: plain, or by the last fifth; below, the cage rubs."""
     seen, limits = np.zeros((looks, 64)), np.zeros(rules.LIMITS)
     seen[:, rules.ENERGY] = np.linspace(first, last, looks)
-    seen[:, rules.LAND] = 50.0  # which turns the energy over in each look
+    seen[:, rules.LAND] = fed
     limits[[rules.DRIVE, rules.MOST]] = 1.0, 40.0
     assert rules.end_of_motion.py_func(seen, looks - 1, True, False, limits) == end

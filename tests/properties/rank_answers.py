@@ -47,7 +47,7 @@ def _of_verdict(row: Document, cage: Document) -> Iterator[str]:
         yield f"STABLE with a safety factor of at most {high}"
     if row["verdict"] == "UNSTABLE" and low is not None and low > 1.0:
         yield f"UNSTABLE with a safety factor of at least {low}"
-    is_by_land = row["verdict"] == "UNSTABLE" and 2 * worst["whirls_by_land"] > worst["whirls"]
+    is_by_land = row["verdict"] == "UNSTABLE" and row["driven_by_land"]
     few = 0.1 * row["runs"] if is_by_land or (low is not None and low <= 1.0) else 0.5 * row["runs"]
     if row["verdict"] == "UNSTABLE" and worst["whirls"] <= few:
         yield f"few whirl: {worst}"

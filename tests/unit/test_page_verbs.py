@@ -339,8 +339,7 @@ def candidate(verdict="STABLE", critical=(0.248, 0.231, 0.269), friction=0.28):
     factor = {"safety_factor": None, "safety_factor_low": ends[f"{CRITICAL}_low"] / friction}
     sizes = {"land_clearance": 2e-4, "pocket_clearance": 2.5e-4}
     rest = {"name": "Phenolic", "rank": 1, "friction": friction, "verdict": verdict, "extrapolation": []}
-    by_kick = [{"kick": 0.1, "whirls": 64, "whirls_by_land": 0}]
-    rest |= {"cage_motion": "SETTLED", "worst_kick": 0.1, "by_kick": by_kick}
+    rest |= {"cage_motion": "SETTLED", "driven_by_land": False}
     return Part({**rest, **sizes, **factor, **ends}, dict.fromkeys(sizes, "m"))
 
 
@@ -383,8 +382,7 @@ def test_the_headline_says_whether_uneven_orbits_decide(friction, count):
 
 def test_the_headline_names_a_land_that_drives_the_cage():
     """And states neither that the pockets decide nor that a land so tight is not enough."""
-    driven = {"by_kick": [{"kick": 0.1, "whirls": 12, "whirls_by_land": 12}], "safety_factor_low": None}
-    row = Part(candidate("UNSTABLE").values | driven, {})
+    row = Part(candidate("UNSTABLE").values | {"driven_by_land": True, "safety_factor_low": None}, {})
     answer = Part(NO_EFFECT.values | {"cage": {"land_friction": 0.157}}, {})
     said = "Phenolic: friction on the land, 0.157, and not in the pockets, drives the whirl."
     assert [*deciding(answer, [row])] == [said]

@@ -91,7 +91,7 @@ KEPT |= {"simulate": {"moving-cage.html"}, "sweep": {NAME}}  # its verdicts are 
 COUNTS = (
     *("most_loaded", "iterations", "whirling", "ball", "run", "runs", "nodes", "sweeps", "slip", "rank"),
     *("whirl_direction", "friction_scatter_assumed", "settles", "rolls", "whirls"),
-    *("drifts", "unresolved", "whirls_by_land", "left_pocket", "force_exceeds_races"),
+    *("drifts", "unresolved", "whirls_by_land", "left_pocket", "force_exceeds_races", "driven_by_land"),
     *("input_mean", "input_standard_deviation"),  # each in the unit beside it, in input_unit
 )
 """Ends of the names of plain numbers without a unit."""

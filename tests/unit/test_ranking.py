@@ -12,7 +12,7 @@ from separatrix.chain.pocket_friction import with_scatter
 from separatrix.study.reading import read_study
 from separatrix.study.study import CageModel
 from separatrix.verdict.beyond_models import Pocket
-from separatrix.verdict.judgement import Judgement, KickCount, Verdict, judge, transmitted_force
+from separatrix.verdict.judgement import Judgement, Verdict, judge, transmitted_force
 from separatrix.verdict.long_jobs import NAME, Interrupted, Ledger, Runner
 from separatrix.verdict.ranking import Asked, _row, rank
 from separatrix.verdict.ranking_records import (
@@ -104,8 +104,7 @@ def test_of_one_cage_frictions_decide_who_is_tied(interval):
 def test_a_safety_factor_beyond_what_was_searched_ranks_by_its_bound():
     """The lowest friction is first; a friction of 0 before all, one that a land drives behind all."""
     rows = [ranked(name, 3e6, 0.3, 0.5, 0.1) for name in "ABCD"]
-    land = KickCount(**dict.fromkeys((f.name for f in fields(KickCount)), 0) | {"whirls_by_land": 1})
-    rows[3] = replace(rows[3], judgement=judgement(verdict=Verdict.UNSTABLE, by_kick=(land,), worst_kick=0))
+    rows[3] = replace(rows[3], judgement=judgement(verdict=Verdict.UNSTABLE, driven_by_land=True))
     bounds = [(None, 1.0 / 0.3, None), (None, 1.0 / 0.05, None), (None, None, None), (None, None, None)]
     names = ("safety_factor", "safety_factor_low", "safety_factor_high")
     rows = [replace(row, **dict(zip(names, one, strict=True))) for row, one in zip(rows, bounds, strict=True)]

@@ -11,7 +11,7 @@ from separatrix import InputError, Runner, moving_cage, read_study, solve
 from separatrix.front import main
 from separatrix.study.study import CageModel
 from separatrix.verdict.judgement import judge, transmitted_force
-from separatrix.verdict.swept_cases import MOST_CASES, sweep
+from separatrix.verdict.swept_cases import MOST_CASES, sweep, worst_case
 
 STUDY = read_study("momentum-wheel")
 QUICK = replace(STUDY, stability=replace(STUDY.stability, runs=4, duration=0.01))
@@ -63,6 +63,9 @@ def test_a_margin_is_a_safety_factor_in_the_full_model(model):
     assert one.margin is None
     assert one.safety_factor_low <= one.own_critical_friction / 0.3 == one.safety_factor
     assert one.is_below_margin is (one.own_critical_friction < 0.3)
+    none = dict.fromkeys(("safety_factor", "safety_factor_low", "safety_factor_high"))
+    land = replace(one, case=7, verdict="UNSTABLE", driven_by_land=True, **none)
+    assert (land.is_below_margin, worst_case([one, land]).value) == (True, 0.0)
 
 
 def test_a_refused_case_is_a_row_with_its_reason():

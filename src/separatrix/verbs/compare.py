@@ -81,7 +81,7 @@ NOT_RESULTS = (
     *("study", "cage", "provenance", "separatrix_version", "verb", "name", "title", "seed", "warnings"),
     *("units", "complete", "reason", "static_reason", "outcome_sentence", "paper_statement", "words"),
     *("ball_reason", "extrapolation", "cause_sentence", "convergence", "clouds", "race", "notes"),
-    *("by_kick", "count"),
+    *("by_kick", "long_look"),
 )
 """Inputs, sentences that follow from numbers, single drawn bearings, and the runs behind a share."""
 

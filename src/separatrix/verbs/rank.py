@@ -213,7 +213,7 @@ def holds_for(answer: Part) -> list[tuple[str, Any]]:
 def long_look(answer: Part) -> list[tuple[str, Any]]:
     """Return what was seen of a calm cage on its land long after it settled; nothing without a land."""
     look = answer.get("long_look")
-    return [("A long look", f"{q.fill(look, 'at a friction of {friction}: ')}{look.reason}")] if look else []
+    return [("A long look", look.reason)] if look else []
 
 
 # Pictures.

@@ -124,6 +124,7 @@ class Judgement:
     """Pocket force whose friction is all that the races hold, beyond which this ball has no meaning; null
     without one."""
     force_exceeds_races: bool  # whether the largest contact force is beyond that
+    driven_by_land: bool  # whether friction on the land drives most of the runs that whirl
     left_pocket: int  # runs, of all, in which a ball reached the edge of its pocket's wall
     pocket_impact_shares: Annotated[tuple[Ratio, ...], ("ball",)]  # of each pocket in all, any run; or zeros
     land_impact_share: Ratio  # of the land in all impacts
@@ -157,7 +158,7 @@ class Judgement:
     @property
     def is_by_land(self) -> bool:
         """Whether friction on the land, and not in the pockets, makes the cage unstable."""
-        return self.verdict is Verdict.UNSTABLE and self.worst.is_by_land
+        return self.verdict is Verdict.UNSTABLE and self.driven_by_land
 
 
 def is_calm(outcome: NDArray[np.int64]) -> NDArray[np.bool_]:
@@ -254,6 +255,7 @@ def judge(cage: MovingCage, ensemble: Ensemble, *, capacity: Newton | None = Non
         largest_land_force=float(ensemble.largest_land_force.max()),
         force_limit=limit if math.isfinite(limit) else None,
         force_exceeds_races=largest > limit,
+        driven_by_land=counts[at].is_by_land,
         left_pocket=int(np.count_nonzero(ensemble.left_ball)),
         pocket_impact_shares=tuple(pockets.tolist()),
         land_impact_share=land,

@@ -98,6 +98,7 @@ def seen_for_longer(judgement: Judgement, first: LongLook | None, own: LongLook 
         longest_run=own.duration,
         by_kick=counts,
         worst_kick=at.kick,
+        driven_by_land=at.is_by_land,
         probability_stable=at.probability_stable,
         probability_low=at.probability_low,
         probability_high=at.probability_high,

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 Mask = NDArray[np.bool_]
 
 LEFT, IN_WALL = 2.0, 0.1
-"""Mean offset at which a calm cage on its land has left its pockets: in half their clearances, and in
+"""Mean offset at which a calm cage has left its pockets: in half their clearances, and on a land also in
 diameters of a ball. The balls yield along their orbits, so a wide land lets the cage move on with them; but
 beyond half a wall of a fifth of a ball, a thin one by our guess, they are out of it. Where the diameters of a
 cage are known each ball is followed to its edge."""
@@ -137,7 +137,8 @@ def left_pockets(cage: MovingCage, ensemble: Ensemble) -> Mask:
 
 def in_pockets(cage: MovingCage) -> Metre:
     """Offset beyond which balls are out of their pockets [m]."""
-    return max(LEFT * cage.half_play, IN_WALL * cage.ball_diameter) if cage.half_play > 0.0 else math.inf
+    wall = 0.0 if math.isinf(cage.land_gap) else IN_WALL * cage.ball_diameter
+    return max(LEFT * cage.half_play, wall) if cage.half_play > 0.0 else math.inf
 
 
 def on_land(cage: MovingCage) -> Metre:

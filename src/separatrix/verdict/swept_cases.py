@@ -113,7 +113,7 @@ def worst_case(cases: Iterable[SweptCase]) -> WorstCase | None:
         values = ((getattr(one, quantity), one) for one in known)
         found = [(sign * value, one.case) for value, one in values if value is not None]
         if quantity == "safety_factor":
-            found += [(0.0, one.case) for one in known if one.is_by_land]
+            found += [(0.0, one.case) for one in known if one.is_below_margin and one.is_by_land]
         if found:
             value, case = min(found)
             alike = sum(math.isclose(one, value, rel_tol=ROUNDING) for one, _ in found)
@@ -200,6 +200,7 @@ class SweptCase:
     largest_contact_force: Newton | None = None
     force_limit: Newton | None = None  # pocket force up to which the balls of the verdict have a meaning
     force_exceeds_races: bool | None = None  # whether the largest contact force is beyond that
+    driven_by_land: bool | None = None  # whether friction on the land drives most of the runs that whirl
     largest_land_force: Newton | None = None
     runs: int | None = None  # of the verdict
     time_share: Ratio | None = None  # of a duty cycle; null without one
@@ -207,16 +208,15 @@ class SweptCase:
 
     @property
     def is_by_land(self) -> bool:
-        """Whether its land makes it unstable: it has a critical friction, and no safety factor."""
-        has_limit = self.own_critical_friction_low is not None
-        return self.verdict == "UNSTABLE" and has_limit and self.safety_factor_low is None
+        """Whether friction on the land, and not in the pockets, makes the cage unstable."""
+        return self.verdict == "UNSTABLE" and bool(self.driven_by_land)
 
     @property
     def is_below_margin(self) -> bool | None:
         """Whether safety factor or margin say that the cage whirls; None where neither was computed."""
         if self.margin is not None:
             return self.margin < 0.0
-        if self.is_by_land:
+        if self.own_critical_friction_low is not None and self.is_by_land:
             return True
         least = self.safety_factor_low if self.safety_factor is None else self.safety_factor
         return None if least is None else least < 1.0

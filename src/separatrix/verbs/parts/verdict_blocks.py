@@ -56,18 +56,13 @@ def drifting(row: Part) -> Part | None:
     """Return a row that nothing guides and whose runs do not all whirl: only these have a drift rate."""
     if not judged(row) or not row.drift_rate_law:
         return None
-    return None if worst(row).whirls == row.runs else row
-
-
-def worst(row: Part) -> Part:
-    """Return where the runs of a row from its worst disturbance end."""
-    found: Part = next(one for one in row.by_kick if one.kick == row.worst_kick)
-    return found
+    worst = next(one for one in row.by_kick if one.kick == row.worst_kick)
+    return None if worst.whirls == row.runs else row
 
 
 def is_by_land(row: Part) -> bool:
     """Whether friction on the land makes the cage of a row unstable."""
-    return bool(row.verdict == "UNSTABLE" and 2 * worst(row).whirls_by_land > worst(row).whirls)
+    return bool(row.verdict == "UNSTABLE" and row.driven_by_land)
 
 
 def pocket_force(row: Part) -> Cell:
