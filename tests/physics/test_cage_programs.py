@@ -66,7 +66,7 @@ def differences(cage: MovingCage, refined: tuple[int, ...]) -> list[float]:
     ("name", "tolerance"), list(zip(CAGES, (2e-6, 6e-6, 1e-6, 2e-6, 5e-7, 8e-7), strict=True))
 )
 def test_the_engine_moves_as_the_other_program(name, tolerance):
-    """Over 3 ms with 12 to 28 impacts, motions of 0.3 to 1 mm; a quarter of the step, a third of it."""
+    """3 ms, 12 to 28 impacts, motions of 0.3 to 1 mm; a quarter of the step leaves a third of the error."""
     # Tolerances are twice the differences at the usual step. They fall by 4.4 to 33: by 16 in the mean, by
     # more or less with the part of a step at which a touch begins.
     usual, quarter = differences(CAGES[name], (1, 4))
