@@ -12,7 +12,7 @@ from cages import ON_A_LAND
 from separatrix.cage import MovingCage, moving_cage, run_ensemble
 from separatrix.chain.race_traction import BallTraction
 from separatrix.chain.solution import solve
-from separatrix.study.pocket_shape import PocketShape
+from separatrix.study.cage_design import PocketShape
 from separatrix.study.reading import read_study
 from separatrix.study.study import BallModel, Guidance, MotionModel, StabilitySettings
 

@@ -6,13 +6,12 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pytest
 
-from separatrix.chain.creep import Creep
 from separatrix.chain.exact.influence import Body, Layer, solid
 from separatrix.chain.exact.pressure import pressed_contact
 from separatrix.chain.exact.rolling import ContactProblem, rigid_slip, rolling_contact, solve_each
 from separatrix.chain.exact.slip import FrictionLaw
 from separatrix.chain.exact.slope import traction_slope
-from separatrix.chain.hertz import contact_ellipse
+from separatrix.chain.hertz import Creep, contact_ellipse
 
 STEEL = solid(200e9, 0.25)
 BARE = Body(base=STEEL)

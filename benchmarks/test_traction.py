@@ -2,8 +2,7 @@
 
 import numpy as np
 
-from separatrix.chain.creep import Creep
-from separatrix.chain.hertz import contact_ellipse
+from separatrix.chain.hertz import Creep, contact_ellipse
 from separatrix.chain.strip import film_tables, solve_strip
 from separatrix.chain.traction_curve import traction_curve, traction_slope
 

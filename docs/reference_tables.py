@@ -24,7 +24,7 @@ from separatrix.study.ball_bearing import Material
 from separatrix.study.template import keys_in, remark_of, sections, study_keys
 from separatrix.verbs import cage_answers, chain_answers
 from separatrix.verbs.compare import Row
-from separatrix.verbs.parts.credibility_blocks import FACTORS, claims
+from separatrix.verbs.report import FACTORS, claims
 from separatrix.verdict.swept_cases import Duty, Sweep, WorstCase
 
 KEYS = """# Keys of a study

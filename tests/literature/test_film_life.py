@@ -12,8 +12,8 @@ import pytest
 
 import separatrix
 from separatrix.chain.contacts import bearing_state
-from separatrix.chain.slip_work import track_work
 from separatrix.study.study import KinematicModel, Race
+from separatrix.verdict.wear_life import track_work
 
 
 @pytest.mark.parametrize("race", Race)

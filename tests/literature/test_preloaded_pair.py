@@ -15,8 +15,7 @@ import math
 
 import pytest
 
-from separatrix.chain.contacts import bearing_state
-from separatrix.chain.preloaded_pair import pair_loads
+from separatrix.chain.contacts import bearing_state, pair_loads
 from separatrix.study.study import Arrangement, BallBearing, KinematicModel, Material, Operation
 
 STEEL = Material(name="440C", elastic_modulus=200e9, poisson_ratio=0.285)

@@ -10,9 +10,9 @@ from separatrix import BallTraction, Cause, Ensemble, History, MovingCage, RunOu
 from separatrix.cage.closed_forms import felt_mass, whirl_rate
 from separatrix.cage.course import follow_start
 from separatrix.cage.disturbance import Starts
-from separatrix.study.distribution import Distribution
 from separatrix.study.keys import settled_in, with_values
 from separatrix.study.study import BallBearing, Guidance, Material, MotionModel, PocketShape, Study
+from separatrix.study.uncertain import Distribution
 
 AT_REST = MovingCage(
     mass=0.05, moment_of_inertia=0.05 * 0.0325**2, ball_count=11, pitch_radius=0.0325, cage_speed=0.0,

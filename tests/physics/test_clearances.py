@@ -13,12 +13,11 @@ from separatrix import InputError, moving_cage, read_study, solve
 from separatrix.chain.clearances import TurningRing, mean_expansion, running_clearances
 from separatrix.chain.land_fluid import annulus_mass, decay_rate, land_fluid
 from separatrix.study.ball_bearing import Expansion
-from separatrix.study.distribution import uniform
 from separatrix.study.keys import with_values
 from separatrix.study.study import ClearanceState, Guidance, Material, PocketShape
-from separatrix.verdict.beyond_models import pocket_of
+from separatrix.study.uncertain import uniform
+from separatrix.verdict.beyond_models import MOVED, WIDE, effects_on, pocket_of
 from separatrix.verdict.draws import sample
-from separatrix.verdict.effects import MOVED, WIDE, effects_on
 
 STUDY = read_study("cryogenic-turbopump")
 BEARING = STUDY.bearing

@@ -14,8 +14,8 @@ from separatrix import InputError, RunOutcome, Verdict, judge, moving_cage, read
 from separatrix.cage.disturbance import settings_for
 from separatrix.friction.friction_fit import TestedFriction
 from separatrix.study.candidates import environment_of
-from separatrix.study.distribution import normal, samples, uniform
 from separatrix.study.study import Candidate, Friction, RankingQuestion
+from separatrix.study.uncertain import normal, samples, uniform
 from separatrix.verdict.draws import (
     Case,
     drawn_bearings,

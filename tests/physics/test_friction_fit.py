@@ -12,9 +12,8 @@ from separatrix import InputError, contact_ellipse, read_study
 from separatrix.chain.impact_restitution import hertz_coefficient
 from separatrix.chain.pocket_friction import contact_radius, sliding_speed
 from separatrix.friction.friction_file import FrictionFile, FrictionTest, Place, friction_text
-from separatrix.friction.friction_fit import TestedFriction, fit_friction
+from separatrix.friction.friction_fit import LinearModel, TestedFriction, conditional, fit_friction
 from separatrix.friction.friction_law import StatedFriction
-from separatrix.friction.scatter import LinearModel, conditional
 from separatrix.ground.reader import read_text
 
 ENVIRONMENT = "liquid nitrogen, 440C"

@@ -12,10 +12,12 @@ from scipy.integrate import quad
 from scipy.special import elliprd, elliprf
 
 from separatrix import InputError, Material, Race
-from separatrix.chain.creep import Creep, contact_creep, deformed_radius
 from separatrix.chain.hertz import (
+    Creep,
+    contact_creep,
     contact_ellipse,
     contact_modulus,
+    deformed_radius,
     ellipse_of_axes,
     ellipse_of_curvatures,
     ellipse_shape,

@@ -10,10 +10,9 @@ from scipy.special import ndtr, ndtri
 
 import separatrix
 from separatrix import LifeTable, solve
-from separatrix.chain import slip_work
 from separatrix.chain.contacts import bearing_state
-from separatrix.chain.slip_work import TrackWork, track_work
 from separatrix.study.study import KinematicModel, Race, WearRates
+from separatrix.verdict import wear_life
 from separatrix.verdict.critical_friction import PLACES, Count, steepness
 from separatrix.verdict.life_table import (
     FREELY,
@@ -32,6 +31,7 @@ from separatrix.verdict.wear_life import (
     BearingWear,
     Land,
     Phase,
+    TrackWork,
     Worn,
     causes,
     course,
@@ -39,6 +39,7 @@ from separatrix.verdict.wear_life import (
     film_after,
     lives,
     steady_coverage,
+    track_work,
     worn_depth,
 )
 
@@ -89,7 +90,7 @@ def test_two_steps_of_a_film_are_one(deposit):
 )
 def test_work_of_a_pass_is_that_of_an_independent_program(name, inner, outer, passes, monkeypatch):
     """Its largest value across the track, rigid bodies; and the heat is friction times all of it."""
-    monkeypatch.setattr(slip_work, "STRIPS", 512)
+    monkeypatch.setattr(wear_life, "STRIPS", 512)
     given = study_of(name)
     bearing, operation, friction = given.bearing, given.operation, given.film.race_friction
     state = bearing_state(bearing, operation, KinematicModel.FREE, friction)

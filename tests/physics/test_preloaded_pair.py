@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 
 import separatrix
 from separatrix import Arrangement, BallBearing, InputError, KinematicModel, Operation, PreloadKind
+from separatrix.chain.contacts import FAINT, GAPPED, PairLoads, pair_loads, with_axial_load
 from separatrix.chain.equilibrium import equilibrium
-from separatrix.chain.preloaded_pair import FAINT, GAPPED, PairLoads, pair_loads, with_axial_load
 
 FREE, FRICTION = KinematicModel.FREE, 0.1
 PRELOAD = 200.0

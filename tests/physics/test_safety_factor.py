@@ -11,7 +11,7 @@ import pytest
 import separatrix
 from separatrix import Runner, Verdict, judge, moving_cage
 from separatrix.cage.disturbance import settings_for
-from separatrix.ground.document import Part
+from separatrix.ground.plain_data import Part
 from separatrix.present.quantity_text import cell, estimate, show
 from separatrix.study.study import BallModel, CageModel, MotionModel, PocketShape, StabilitySettings
 from separatrix.verdict.beyond_models import Pocket

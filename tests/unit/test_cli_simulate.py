@@ -15,8 +15,7 @@ from scipy.integrate import quad
 import separatrix
 from separatrix.cage import run_ensemble, settings_for
 from separatrix.front import main
-from separatrix.ground.document import Part
-from separatrix.ground.plain_data import plain
+from separatrix.ground.plain_data import Part, plain
 from separatrix.present import draw, view
 from separatrix.present.view import A_TURN, AROUND, MOST_FRAMES, frame_moments, scene
 from separatrix.verbs.parts import run_pictures

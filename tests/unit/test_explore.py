@@ -19,9 +19,8 @@ from separatrix.front import main
 from separatrix.verdict import uncertain_study
 from separatrix.verdict import uncertain_study as uncertain
 from separatrix.verdict.draws import Case
-from separatrix.verdict.drivers import CHANCE, drivers, fitted
 from separatrix.verdict.judgement import KickCount, Verdict
-from separatrix.verdict.uncertain_study import is_plain, settles_more
+from separatrix.verdict.uncertain_study import CHANCE, drivers, fitted, is_plain, settles_more
 
 CASE = Case("A")
 NAMES = ["x", "y", "z"]

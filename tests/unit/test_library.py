@@ -16,10 +16,10 @@ import separatrix
 from separatrix import InputError, read_study, resolved
 from separatrix.ground.schema import keys_of
 from separatrix.study import library
+from separatrix.study.film import library_rate
 from separatrix.study.library import Datum, Library, choose, contradictions, with_files
 from separatrix.study.reading import study_again
 from separatrix.study.study import WearRates, shipped_studies
-from separatrix.study.wear_rates import library_rate
 from separatrix.verdict.life_table import wear_rates
 
 DATA = files("separatrix.study.library") / "data"

@@ -10,8 +10,8 @@ from matplotlib.figure import Figure
 from test_reference_tables import missing
 
 from separatrix import InputError, read_study, restitution_factor, wilson_interval
-from separatrix.ground.compiling import COMPILING
-from separatrix.ground.document import Part, part_of
+from separatrix.ground.compiled import COMPILING
+from separatrix.ground.plain_data import Part, part_of
 from separatrix.ground.quantity import Estimate, Quantity, alone, in_column
 from separatrix.present.blocks import Level, Picture
 from separatrix.present.draw import draw_panel
@@ -23,7 +23,7 @@ from separatrix.verbs.compare import RESULTS, difference_interval, differing, re
 from separatrix.verbs.compare import compared as compared_answers
 from separatrix.verbs.map import map_figure, nearest_words, unchanged, undecided
 from separatrix.verbs.parts.answer_page import entry_words
-from separatrix.verbs.parts.bearing_drawing import CAGE, bearing_picture, section_of
+from separatrix.verbs.parts.chain_blocks import CAGE, bearing_picture, section_of
 from separatrix.verbs.parts.verdict_blocks import (
     deciding,
     evidence_column,

@@ -13,7 +13,7 @@ from test_reference_tables import missing
 import separatrix
 from separatrix import InputError, Interrupted, read_study
 from separatrix.front import api, main
-from separatrix.ground.document import part_of
+from separatrix.ground.plain_data import part_of
 from separatrix.ground.quantity import Estimate
 from separatrix.present import html, quantity_text
 from separatrix.present.blocks import Facts, Heading, Level, Note, Page, Picture, Table, View, spans

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from separatrix import KinematicModel, Kinematics, Operation, PocketShape, Study, read_study, solve
-from separatrix.study.cautions import beyond_bearings
+from separatrix.study.reading import beyond_bearings
 from separatrix.verbs import restitution
 from separatrix.verbs.verb import NoOptions
 from separatrix.verdict.beyond_models import Moved, bending_frequency, beyond_motion, pocket_pressure

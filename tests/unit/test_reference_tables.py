@@ -23,7 +23,7 @@ from separatrix.present.blocks import Facts, Table
 from separatrix.present.quantity_text import QUANTITIES
 from separatrix.study.sources import resolved
 from separatrix.study.template import sections, study_keys
-from separatrix.verbs.parts.credibility_blocks import FACTORS, claims, credibility
+from separatrix.verbs.report import FACTORS, claims, credibility
 from separatrix.verdict.ranking_records import Ranked
 
 BY_NAME = {"study", "provenance", "units", "metadata", "slopes", "tested"}

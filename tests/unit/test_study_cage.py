@@ -11,7 +11,7 @@ from commands import refusal_line, rows_of, written
 
 from separatrix import BallTraction, CageDesign, Guidance, InputError, MotionModel, PocketShape, read_study
 from separatrix.study.cage_body import cage_inertia, ring_body
-from separatrix.study.pocket_shape import half_play, tilt
+from separatrix.study.cage_design import half_play, tilt
 from separatrix.study.study import StabilitySettings
 from separatrix.verbs.check import _cage as checked
 

@@ -12,8 +12,8 @@ from scipy import stats
 from scipy.stats import lognorm
 
 from separatrix import InputError, read_study, resolved
-from separatrix.study.distribution import CUT, log_normal, log_uniform, normal, samples, uniform
 from separatrix.study.keys import study_numbers, value_of, with_values
+from separatrix.study.uncertain import CUT, log_normal, log_uniform, normal, samples, uniform
 from separatrix.verdict.draws import sample, uncertain_inputs
 from separatrix.verdict.ranking_records import measured
 

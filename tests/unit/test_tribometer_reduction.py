@@ -13,7 +13,7 @@ from separatrix.friction.logs.column_map import Conditions
 from separatrix.friction.logs.log import RawLog
 from separatrix.friction.reduction import TestFriction, reduce_log
 from separatrix.friction.wear import FALLS, NO_GROWTH, NO_PRESSURE, NO_WAY, TOO_FEW, sample_wear
-from separatrix.ground.document import Part
+from separatrix.ground.plain_data import Part
 from separatrix.verbs.tribometer import _worn
 
 MEASURED = {"slip_speed": 1.0, "normal_force": 10.0, "temperature": 150.0}

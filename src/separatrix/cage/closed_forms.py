@@ -26,7 +26,7 @@ from separatrix.ground.units import (
     Ratio,
     Second,
 )
-from separatrix.study.pocket_shape import PocketShape, end_half_play
+from separatrix.study.cage_design import PocketShape, end_half_play
 
 if TYPE_CHECKING:
     from separatrix.cage.moving_cage import MovingCage

@@ -16,9 +16,14 @@ import math
 import numpy as np
 
 from separatrix.cage.ball import REST_PLACE, REST_SPEED, race_force, race_slopes, traction
+from separatrix.cage.contact_force import (
+    land_forces,
+    level_depth,
+    level_friction,
+    pocket_depth,
+    pocket_friction,
+)
 from separatrix.cage.frame import cage_rates, place
-from separatrix.cage.land_force import land_forces
-from separatrix.cage.pocket_force import level_depth, level_friction, pocket_depth, pocket_friction
 from separatrix.cage.rows import *
 from separatrix.ground.compiled import inlined
 

@@ -41,7 +41,7 @@ from separatrix.ground.units import (
     Second,
     format_quantity,
 )
-from separatrix.study import cage_design, pocket_shape
+from separatrix.study import cage_design
 from separatrix.study.cage_design import CageDesign
 from separatrix.study.study import BallModel, Guidance, MotionModel, PocketContact, PocketShape
 
@@ -164,7 +164,7 @@ class MovingCage:
     @property
     def half_play(self) -> Metre:
         """c_p, half the clearance of a ball along the circumference, after shape and offsets [m]."""
-        play, out = pocket_shape.half_play(self), self.pocket_radial_offset
+        play, out = cage_design.half_play(self), self.pocket_radial_offset
         return math.sqrt((play - out) * (play + out)) if out else play
 
     @property
@@ -233,7 +233,7 @@ class MovingCage:
             return math.inf, math.inf
         half = (self.ball_diameter + self.pocket_clearance) / 2.0 + 1.5 * self.ball_diameter_scatter
         outer = math.inf if self.outer_radius is None else self.outer_radius
-        inward = math.inf if math.isinf(outer) else pocket_shape.edge_level(outer, half) - self.pitch_radius
+        inward = math.inf if math.isinf(outer) else cage_design.edge_level(outer, half) - self.pitch_radius
         return (math.inf if self.inner_radius is None else self.pitch_radius - self.inner_radius), inward
 
     @property
@@ -300,7 +300,7 @@ def _pockets_reach_their_balls(pocket_radial_offset: Metre, cage: MovingCage) ->
     """Only a sphere notices the offset, which is less than it allows."""
     if pocket_radial_offset and not cage.is_wrapped:
         yield Fault("pocket_radial_offset", "has a meaning only for a spherical pocket")
-    elif pocket_radial_offset and abs(pocket_radial_offset) >= (play := pocket_shape.half_play(cage)):
+    elif pocket_radial_offset and abs(pocket_radial_offset) >= (play := cage_design.half_play(cage)):
         rule = f"must be smaller than half the clearance, {format_quantity(play, 'm')}"
         yield Fault("pocket_radial_offset", rule, "Farther out the pockets would grip their balls.")
 

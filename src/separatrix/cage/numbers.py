@@ -19,8 +19,7 @@ from separatrix.cage.closed_forms import (
     time_unit,
 )
 from separatrix.cage.rows import of
-from separatrix.study.cage_design import Guidance
-from separatrix.study.pocket_shape import PocketShape
+from separatrix.study.cage_design import Guidance, PocketShape
 
 if TYPE_CHECKING:
     from separatrix.cage.moving_cage import MovingCage

@@ -11,6 +11,7 @@ from functools import cache
 
 import numpy as np
 
+from separatrix.cage.contact_force import pocket_depth
 from separatrix.cage.frame import place
 from separatrix.cage.motion import held_spins, held_stage_end, hold_spins, rates, stage_end
 from separatrix.cage.outcome import (
@@ -24,7 +25,6 @@ from separatrix.cage.outcome import (
     UNRESOLVED,
     end_of_motion,
 )
-from separatrix.cage.pocket_force import pocket_depth
 from separatrix.cage.rows import *
 from separatrix.ground.compiled import inlined, kernel, part
 

@@ -19,7 +19,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from separatrix.chain.contacts import RaceContact, Rolling, of_both_races
-from separatrix.chain.creep import Creep
 from separatrix.chain.grooved_ball import (
     LEAST_SHARE,
     Problem,
@@ -29,6 +28,7 @@ from separatrix.chain.grooved_ball import (
     touches,
     turning_loads,
 )
+from separatrix.chain.hertz import Creep
 from separatrix.chain.race_traction import SLOPE_ALONE, BallTraction, FreeBall, SlipField, contact_traction
 from separatrix.chain.slip_friction import chebyshev_nodes
 from separatrix.ground.compiled import kernel

@@ -22,8 +22,7 @@ from separatrix.ground.units import (
 )
 from separatrix.study.ball_bearing import ROOM, BallBearing, Material
 from separatrix.study.cage_body import ring_of
-from separatrix.study.cage_design import CageDesign, ClearanceState, Guidance
-from separatrix.study.pocket_shape import PocketShape
+from separatrix.study.cage_design import CageDesign, ClearanceState, Guidance, PocketShape
 from separatrix.study.study import Operation
 
 NEAR: Kelvin = 10.0

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from separatrix.chain.creep import track_area
+from separatrix.chain.hertz import track_area
 from separatrix.chain.land_fluid import NEAR, fluid_property
 from separatrix.ground.errors import InputError
 from separatrix.ground.units import (

@@ -14,14 +14,13 @@ from functools import lru_cache
 
 import numpy as np
 
-from separatrix.chain.creep import Creep
 from separatrix.chain.exact.influence import Body, Layer, solid
 from separatrix.chain.exact.pressure import pressed_contact
 from separatrix.chain.exact.rolling import ContactProblem, rigid_slip, rolling_contact, solve_each
 from separatrix.chain.exact.slip import FrictionLaw
 from separatrix.chain.exact.slope import COLUMNS, ROWS, RaceSlope, traction_slope
 from separatrix.chain.film_compliance import track_of
-from separatrix.chain.hertz import ContactEllipse
+from separatrix.chain.hertz import ContactEllipse, Creep
 from separatrix.chain.traction_curve import ShearField, TractionCurve, shear_field, traction_curve
 from separatrix.ground.errors import ConvergenceError, InputError
 from separatrix.ground.schema import Fault, Faults, check, key, positive, record

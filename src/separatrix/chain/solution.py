@@ -16,13 +16,16 @@ from separatrix.chain.ball_mobility import Mobility, free_ball, mobility, shares
 from separatrix.chain.clearances import Clearances, as_it_runs, running_clearances
 from separatrix.chain.contacts import (
     BearingState,
+    PairLoads,
     RaceTraction,
     Rolling,
     Waves,
     bearing_state,
+    pair_loads,
     race_traction,
     require_rolling,
     waves_around,
+    with_axial_load,
 )
 from separatrix.chain.equilibrium import orbit_by_diameter
 from separatrix.chain.hertz import approach_coefficient
@@ -42,7 +45,6 @@ from separatrix.chain.pocket_friction import (
     pocket_conditions,
     pocket_speed,
 )
-from separatrix.chain.preloaded_pair import PairLoads, pair_loads, with_axial_load
 from separatrix.chain.race_traction import FreeBall
 from separatrix.ground.errors import InputError
 from separatrix.ground.units import Kilogram, MetrePerSecond, NewtonPerMetre, PerSecond, format_quantity

@@ -17,9 +17,8 @@ from typing import Annotated, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from separatrix.chain.creep import Creep
 from separatrix.chain.film_compliance import Profile, pieces_across
-from separatrix.chain.hertz import ContactEllipse
+from separatrix.chain.hertz import ContactEllipse, Creep
 from separatrix.chain.strip import MasterTable, film_tables, master_traction, solve_strip
 from separatrix.ground.compiled import kernel, part
 from separatrix.ground.errors import InputError

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import median_filter
 
-from separatrix.friction import cycles, steady
+from separatrix.friction import steady
 from separatrix.friction.friction_file import Place, in_words
 from separatrix.friction.logs.column_map import Conditions, of_log
 from separatrix.friction.logs.log import RawLog
@@ -109,7 +109,7 @@ def _stretches(flag: NDArray[np.bool_]) -> list[tuple[int, int]]:
     return [(int(a), int(b)) for a, b in zip(edges[::2], edges[1::2], strict=True)]
 
 
-def run_in_rise(spans: cycles.Spans, end: float, friction: float) -> tuple[float, float] | None:
+def run_in_rise(spans: steady.Spans, end: float, friction: float) -> tuple[float, float] | None:
     """Return place and level before a rise in running-in to far above it; else None.
 
     The spans are those of the whole test, running-in ends at `end` of their ruler, and `friction` is steady
@@ -234,9 +234,9 @@ class Reduction:
     log: RawLog
     test: TestFriction
     steady_rows: slice  # rows of the steady part
-    stretch: cycles.Stretch  # rows in which the contact slid under its load
+    stretch: steady.Stretch  # rows in which the contact slid under its load
     run_in: RunIn | None  # how the end of running-in was found; None where it was given
-    spans: cycles.Spans
+    spans: steady.Spans
     """Means of the steady part from which its error comes; in cycles where those are known."""
     mean: steady.SteadyMean
 
@@ -258,12 +258,12 @@ def reduction(log: RawLog, cut: Place | None = None) -> Reduction:
         cure = f"Give it in another; the log has {' and '.join(log.abscissae)}."
         raise InputError(log.source, f"needs a column of {cut.axis}", "none", cure)
     axis = cut.axis if cut else next(name for name in PREFERRED if name in log.abscissae)
-    along = cycles.rising(log, axis)
+    along = steady.rising(log, axis)
     events = _events(log, along, axis)
     loaded = max((one.row for one in events if not one.is_end), default=0)
     kept = slice(loaded, min((e.row for e in events if e.is_end and e.row > loaded), default=log.rows))
-    done, notes = cycles.clock(log)
-    rows = cycles.Stretch(
+    done, notes = steady.clock(log)
+    rows = steady.Stretch(
         source=log.source,
         along=along[kept],
         friction=log.friction[kept],
@@ -299,8 +299,8 @@ def _test(
     log: RawLog,
     conditions: Conditions,
     axis: str,
-    stretch: cycles.Stretch,
-    spans: cycles.Spans,
+    stretch: steady.Stretch,
+    spans: steady.Spans,
     mean: steady.SteadyMean,
     found: RunIn | None,
 ) -> TestFriction:
@@ -335,8 +335,8 @@ def _test(
 
 
 def _steady(
-    log: RawLog, stretch: cycles.Stretch, kept: slice, given: Place | None
-) -> tuple[cycles.Stretch, float | None, RunIn | None, tuple[str, ...]]:
+    log: RawLog, stretch: steady.Stretch, kept: slice, given: Place | None
+) -> tuple[steady.Stretch, float | None, RunIn | None, tuple[str, ...]]:
     """Return the rows, where on their ruler the steady part begins, how that was found, and notes.
 
     Without a beginning it is that of the rows. If too few whole cycles are left, means are over rows.
@@ -355,7 +355,7 @@ def _steady(
         cut = spans.start + found.end * (spans.end - spans.start) if found.end else None
     else:
         axis, value = given
-        column = cycles.rising(log, axis)[kept]
+        column = steady.rising(log, axis)[kept]
         if value >= column[-1]:
             rule = f"must lie before the end of the test, {in_words(float(column[-1]), axis)}"
             raise InputError(RUN_IN_END, rule, in_words(value, axis))

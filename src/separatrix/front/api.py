@@ -8,7 +8,7 @@ from functools import cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, TypedDict, TypeVar, Unpack
 
-from separatrix.ground.document import Document
+from separatrix.ground.plain_data import Document
 from separatrix.ground.units import MetrePerSecond, Ratio
 from separatrix.present.blocks import Level, Page
 from separatrix.present.text import text

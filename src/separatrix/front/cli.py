@@ -28,7 +28,7 @@ from separatrix.verbs import TOOLS, VERBS, asked_study, computed, processors, to
 from separatrix.verbs.verb import Option, Shown, kind_of, shown_options
 
 if TYPE_CHECKING:
-    from separatrix.ground.document import Document
+    from separatrix.ground.plain_data import Document
     from separatrix.study.study import Study
     from separatrix.verbs.report import Report
     from separatrix.verbs.verb import Tool, Verb

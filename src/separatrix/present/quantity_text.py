@@ -14,7 +14,7 @@ from itertools import pairwise
 from operator import itemgetter
 from typing import Any
 
-from separatrix.ground.document import Part
+from separatrix.ground.plain_data import Part
 from separatrix.ground.quantity import Estimate, Number, Quantity, alone, scale
 from separatrix.present.blocks import Cell, Column, Level, Table, text_column
 from separatrix.present.figure import Axis, Trace

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from separatrix.ground.document import Part
+from separatrix.ground.plain_data import Part
 from separatrix.ground.units import Array, format_number, format_quantity
 
 AROUND = np.linspace(0.0, 2 * np.pi, 721)

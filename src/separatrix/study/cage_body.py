@@ -11,8 +11,7 @@ from separatrix.ground.errors import InputError
 from separatrix.ground.schema import Fault, Faults
 from separatrix.ground.units import Kilogram, KilogramMetre2, Metre, format_quantity
 from separatrix.study.ball_bearing import BallBearing
-from separatrix.study.cage_design import SIGMAS, CageDesign, Guidance, least_step
-from separatrix.study.pocket_shape import PocketShape
+from separatrix.study.cage_design import SIGMAS, CageDesign, Guidance, PocketShape, least_step
 
 NODES = 40
 """Gauss points across a pocket, in the axial and in the tangential direction: exact to 1e-6 of its volume."""

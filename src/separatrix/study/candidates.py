@@ -17,9 +17,8 @@ from separatrix.ground.schema import Fault, Faults, between, check, key, one_of,
 from separatrix.ground.toml import KeyPath, folded, label_of, nearest
 from separatrix.ground.units import Kelvin, Ratio, shown
 from separatrix.study.ball_bearing import NAMELESS, Material
-from separatrix.study.distribution import NORMAL
 from separatrix.study.library import FrictionTable, Library
-from separatrix.study.uncertain import deviation_of, helper_of, number, temperature_of
+from separatrix.study.uncertain import NORMAL, deviation_of, helper_of, number, temperature_of
 
 if TYPE_CHECKING:
     from separatrix.friction.friction_fit import TestedFriction

@@ -11,9 +11,9 @@ from separatrix.ground.errors import InputError
 from separatrix.ground.schema import OneOf, keys_of
 from separatrix.ground.toml import nearest
 from separatrix.ground.units import format_quantity, shown
-from separatrix.study.distribution import LOG_NORMAL, NORMAL, Distribution, described, positive_alternative
 from separatrix.study.study import SECTIONS as SECTIONS
 from separatrix.study.study import Material, Study, Wear, key_of
+from separatrix.study.uncertain import LOG_NORMAL, NORMAL, Distribution, described, positive_alternative
 
 WHOLE = ""
 """Unit of a whole number."""

@@ -14,7 +14,6 @@ from separatrix.friction.friction_file import FrictionTest
 from separatrix.ground.schema import keys_of
 from separatrix.ground.units import unit_of
 from separatrix.study.candidates import RankingSection, cage_candidate, environment_of
-from separatrix.study.distribution import Distribution, described
 from separatrix.study.keys import DERIVED, study_numbers
 from separatrix.study.reading import study_again
 from separatrix.study.study import (
@@ -28,6 +27,7 @@ from separatrix.study.study import (
     Study,
     Wear,
 )
+from separatrix.study.uncertain import Distribution, described
 
 PROPERTIES = {**DERIVED, "film.material": "body"}
 """Inputs that may follow from others, and the property that has them."""

@@ -1,19 +1,21 @@
 """What is asked: one bearing, its operating point, film, cage and candidate cage materials. SI inside.
 
 Every record is frozen and checks itself when built; what computes with it trusts it. A number may be given
-as text with its unit, ``CageDesign(mass="25 g", ...)``: the record holds it in SI.
+as text with its unit, ``CageDesign(mass="25 g", ...)``: the record holds it in SI. Its smaller sections are
+here: the bearing by its designation, and the fluid that cools.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field
+from dataclasses import field, replace
 from functools import cache
 from pathlib import Path
 from typing import Any, ClassVar
 
 from separatrix.friction.friction_law import Friction as Friction
 from separatrix.ground.errors import InputError
+from separatrix.ground.reader import Reading, Refused
 from separatrix.ground.schema import (
     Fault,
     Faults,
@@ -29,9 +31,11 @@ from separatrix.ground.schema import (
     positive,
     record,
 )
-from separatrix.ground.toml import Kind
+from separatrix.ground.toml import KeyPath, Kind, text
 from separatrix.ground.units import (
+    JoulePerKilogramKelvin,
     Kelvin,
+    KilogramPerSecond,
     MetrePerSecond,
     Newton,
     NewtonMetre,
@@ -39,8 +43,12 @@ from separatrix.ground.units import (
     RadianPerSecond,
     Ratio,
     Second,
+    WattPerKelvin,
+    WattPerMetreKelvin,
+    format_quantity,
 )
 from separatrix.study import cage_body
+from separatrix.study.ball_bearing import GEOMETRY
 from separatrix.study.ball_bearing import BallBearing as BallBearing
 from separatrix.study.ball_bearing import Material as Material
 from separatrix.study.cage_design import SCALED
@@ -51,21 +59,114 @@ from separatrix.study.cage_design import ClearanceState as ClearanceState
 from separatrix.study.cage_design import Guidance as Guidance
 from separatrix.study.cage_design import MotionModel as MotionModel
 from separatrix.study.cage_design import PocketContact as PocketContact
+from separatrix.study.cage_design import PocketShape as PocketShape
 from separatrix.study.candidates import Candidate as Candidate
 from separatrix.study.candidates import RankingQuestion as RankingQuestion
 from separatrix.study.candidates import RankingSection, read_ranking
-from separatrix.study.catalogue import read_bearing
-from separatrix.study.cooling import Cooling as Cooling
-from separatrix.study.distribution import Distribution
 from separatrix.study.film import ContactPressure as ContactPressure
 from separatrix.study.film import Film as Film
 from separatrix.study.film import PressureSlip as PressureSlip
 from separatrix.study.film import TractionModel as TractionModel
 from separatrix.study.film import TractionSettings as TractionSettings
 from separatrix.study.film import Wear as Wear
+from separatrix.study.film import WearRates as WearRates
 from separatrix.study.film import Worn as Worn
-from separatrix.study.pocket_shape import PocketShape as PocketShape
-from separatrix.study.wear_rates import WearRates as WearRates
+from separatrix.study.library import UNITS
+from separatrix.study.uncertain import Distribution, helper_of
+
+PLAY = {"contact_angle", "radial_clearance"}
+"""Of these either follows from the other: a study that gives one takes neither from the library."""
+
+
+def read_bearing(raw: Any, path: KeyPath, reading: Reading) -> BallBearing:
+    """Bearing of the section; a designation fills the geometry that the section does not give."""
+    if not isinstance(raw, dict) or "designation" not in raw:
+        return reading.record(BallBearing, raw, path)
+    helper = helper_of(reading)
+    try:
+        name = helper.known(text(raw["designation"], ""), "bearing")
+    except InputError as error:
+        reading.refuse((*path, "designation"), error)
+        raise Refused from None
+    record = helper.library.record("bearing", name)
+    given = {*raw, *(PLAY if PLAY & set(raw) else ())}
+    filled = {key: record.data[key][0] for key in GEOMETRY if key in record.data and key not in given}
+    values = {key: _raw(key, datum.value) for key, datum in filled.items()}
+    bearing = reading.record(BallBearing, {**raw, "designation": name, **values}, path)
+    if not filled:
+        reading.notes.append(
+            f"[bearing] designation {name} has no effect: the study gives all that it fills."
+        )
+    guesses: dict[str, str] = {}
+    for entry, datum in filled.items():
+        value = f"{entry} {format_quantity(datum.value, UNITS[entry])}"
+        reading.places[(*path, entry)] = (
+            f"{record.place}: {name}, {value}; {datum.confidence}: {datum.source}"
+        )
+        if datum.confidence.startswith("guess"):
+            guesses[value] = datum.source
+    if guesses:
+        be = "are guesses" if len(guesses) > 1 else "is a guess"
+        known = "; ".join(dict.fromkeys(guesses.values()))
+        reading.notes.append(f"[bearing] {', '.join(guesses)} of {name} {be} of the library: {known}.")
+    return replace(bearing, record=record.plain())
+
+
+def _raw(key: str, value: float) -> object:
+    """A value of the library as a study file has it."""
+    if UNITS[key] != "-":
+        return f"{value!r} {UNITS[key]}"
+    return int(value) if key == "ball_count" else value
+
+
+_CONDUCTANCE = positive(1e-9, 1e9)
+_TEMPERATURES = ("flow", "race_conductance", "inner_cooling", "outer_cooling", "ball_cooling")
+
+
+@record
+class Cooling:
+    """The fluid that flows through the bearing, and the conductances between it and the parts.
+
+    Conductances are those of all balls together.
+    """
+
+    RULES: ClassVar = (all_or_none(*_TEMPERATURES), all_or_none("steel_conductivity", "steel_heat_capacity"))
+
+    swirl: Ratio = key(between(0.0, 1.0), example="0.4")
+    """Speed of the fluid among the balls: 0 with the outer ring, 1 with the inner ring."""
+
+    flow: KilogramPerSecond | None = key(
+        positive(1e-9, 1e4), default=None, example='"50 g/s"', without="not given: no temperatures"
+    )
+    """Of coolant through the bearing, which comes at the temperature of [operation]."""
+
+    race_conductance: WattPerKelvin | None = key(_CONDUCTANCE, default=None, example='"5 W/K"')
+    """Between the balls and either ring, through their contacts."""
+
+    inner_cooling: WattPerKelvin | None = key(_CONDUCTANCE, default=None, example='"20 W/K"')
+    """Between the inner ring and the coolant."""
+
+    outer_cooling: WattPerKelvin | None = key(_CONDUCTANCE, default=None, example='"30 W/K"')
+    """Between the outer ring and the coolant."""
+
+    ball_cooling: WattPerKelvin | None = key(_CONDUCTANCE, default=None, example='"25 W/K"')
+    """Between the balls and the coolant."""
+
+    cage_cooling: WattPerKelvin = key(
+        not_negative(1e9), default=0.0, example='"10 W/K"', needs=("flow", "there are no temperatures")
+    )
+    """Between the cage and the coolant; 0 leaves the cage's temperature out."""
+
+    steel_conductivity: WattPerMetreKelvin | None = key(
+        positive(1e-3, 1e5), default=None, example='"12 W/(m K)"', without="not given: no flash temperatures"
+    )
+    """Of balls and rings at their temperature."""
+
+    steel_heat_capacity: JoulePerKilogramKelvin | None = key(
+        positive(1e-3, 1e6), default=None, example='"180 J/kg/K"'
+    )
+    """The same."""
+
 
 LEAST_KICK: MetrePerSecond = 1e-9
 """Kicks are larger: the energy of a weaker one is lost in rounding."""

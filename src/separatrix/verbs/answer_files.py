@@ -14,10 +14,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn, TypeGuard
 
 from separatrix import __version__
-from separatrix.ground.document import Document, part_of
 from separatrix.ground.errors import InputError, grouped, harmless, json_text
 from separatrix.ground.files import size_of, staged, unreadable
-from separatrix.ground.plain_data import NOTES, Group, plain, shape, units_of
+from separatrix.ground.plain_data import NOTES, Document, Group, part_of, plain, shape, units_of
 from separatrix.ground.toml import path_text
 from separatrix.ground.units import printable, shown
 from separatrix.verbs.verb import Tool, Verb

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from separatrix.ground.document import Part
+from separatrix.ground.plain_data import Part
 from separatrix.present.blocks import Equation, Heading, Page, Table, facts, text_column
 from separatrix.present.quantity_text import by_race, column, fact, fill, show
 from separatrix.verbs.parts.answer_page import page_of

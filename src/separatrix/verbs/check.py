@@ -6,12 +6,11 @@ from dataclasses import replace
 from math import asin, isclose
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from separatrix.ground.document import Part
+from separatrix.ground.plain_data import Part
 from separatrix.present.blocks import Heading, Level, Note, Page, facts, grouped
 from separatrix.present.quantity_text import fact, fill, show
 from separatrix.verbs.parts.answer_page import APPENDIX, bearing_facts, entry_words, page_of
-from separatrix.verbs.parts.bearing_drawing import bearing_picture
-from separatrix.verbs.parts.chain_blocks import clearance_facts
+from separatrix.verbs.parts.chain_blocks import bearing_picture, clearance_facts
 from separatrix.verbs.verb import NoOptions, Verb
 
 if TYPE_CHECKING:
@@ -68,7 +67,7 @@ def _long_verbs(study: Study) -> Iterator[tuple[str, Second]]:
     from separatrix.ground.errors import SeparatrixError
     from separatrix.study.study import TractionSettings
     from separatrix.verbs import verb_named
-    from separatrix.verdict.expected_time import Counting, Foreseen, time_of_runs
+    from separatrix.verdict.long_jobs import Counting, Foreseen, time_of_runs
 
     quick = replace(study, traction=TractionSettings(), distributions={})  # as many runs
     for name in COUNTED:
@@ -86,7 +85,7 @@ def _long_verbs(study: Study) -> Iterator[tuple[str, Second]]:
 
 def _cage(study: Study) -> CheckedCage | None:
     from separatrix.study.cage_body import cage_inertia
-    from separatrix.study.pocket_shape import half_play, tilt
+    from separatrix.study.cage_design import half_play, tilt
     from separatrix.verbs.chain_answers import CheckedCage
 
     cage = study.cage

@@ -17,9 +17,8 @@ from pathlib import Path
 from typing import Annotated
 
 from separatrix import __version__
-from separatrix.ground.document import Document, Part, part_of
 from separatrix.ground.errors import InputError
-from separatrix.ground.plain_data import plain
+from separatrix.ground.plain_data import Document, Part, part_of, plain
 from separatrix.ground.quantity import ABSENT, Estimate, Quantity
 from separatrix.ground.toml import path_text
 from separatrix.ground.units import printable

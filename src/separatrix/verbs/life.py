@@ -8,8 +8,8 @@ from math import inf, sqrt
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-from separatrix.ground.document import Part
 from separatrix.ground.errors import InputError
+from separatrix.ground.plain_data import Part
 from separatrix.ground.units import parse
 from separatrix.present.blocks import (
     Cell,

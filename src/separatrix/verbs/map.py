@@ -9,7 +9,7 @@ from math import sqrt
 from typing import TYPE_CHECKING, Annotated, Any
 
 from separatrix.ground import errors
-from separatrix.ground.document import Document, Part
+from separatrix.ground.plain_data import Document, Part
 from separatrix.ground.units import UNITS, format_number
 from separatrix.present import quantity_text as q
 from separatrix.present.blocks import Column, Heading, Note, Page, Picture, Table, facts, grouped, text_column

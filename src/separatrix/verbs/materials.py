@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 from separatrix import __version__
-from separatrix.ground.document import Document, Part
 from separatrix.ground.errors import InputError
+from separatrix.ground.plain_data import Document, Part
 from separatrix.ground.quantity import Quantity, alone
 from separatrix.ground.toml import nearest
 from separatrix.ground.units import shown

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from separatrix.ground.document import Part
+from separatrix.ground.plain_data import Part
 from separatrix.present.blocks import Equation, Heading, Note, Page, Picture, facts
 from separatrix.present.figure import BLUE, GREEN, GREY, VERMILION, Across, Figure, Mark, Panel, Trace
 from separatrix.present.quantity_text import axis, cell, fact, fill, named, places_table, show

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from itertools import cycle
 from typing import TYPE_CHECKING, Any
 
-from separatrix.ground.document import Part
+from separatrix.ground.plain_data import Part
 from separatrix.present import figure as fig
 from separatrix.present import quantity_text as q
 from separatrix.present.blocks import (

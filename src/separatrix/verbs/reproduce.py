@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 from separatrix import __version__
-from separatrix.ground.document import Document, Part
 from separatrix.ground.errors import InputError
+from separatrix.ground.plain_data import Document, Part
 from separatrix.ground.quantity import ABSENT, Quantity
 from separatrix.ground.toml import path_text
 from separatrix.ground.units import printable, shown

@@ -6,7 +6,7 @@ from dataclasses import replace
 from itertools import cycle
 from typing import TYPE_CHECKING
 
-from separatrix.ground.document import Part
+from separatrix.ground.plain_data import Part
 from separatrix.ground.units import format_number
 from separatrix.present.blocks import Block, Cell, Column, Level, Note, Page, Picture, Table
 from separatrix.present.figure import SEQUENCE, Figure, Mark, Panel, Trace

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING
 
-from separatrix.ground.document import Part
+from separatrix.ground.plain_data import Part
 from separatrix.present.blocks import (
     Block,
     Heading,

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from math import isfinite
 from typing import TYPE_CHECKING, Annotated
 
-from separatrix.ground.document import Part
+from separatrix.ground.plain_data import Part
 from separatrix.present import view
 from separatrix.present.blocks import Block, Facts, Heading, Level, Note, Page, Picture, View, facts
 from separatrix.present.figure import Figure

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from separatrix.ground.document import Part
+from separatrix.ground.plain_data import Part
 from separatrix.present.blocks import Heading, Level, Note, Page, Picture, facts
 from separatrix.present.figure import Figure, Mark, Trace
 from separatrix.present.quantity_text import begun, fill

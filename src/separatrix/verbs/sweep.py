@@ -10,7 +10,7 @@ from itertools import pairwise, product
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
-from separatrix.ground.document import Part
+from separatrix.ground.plain_data import Part
 from separatrix.present import quantity_text as q
 from separatrix.present.blocks import Column, Heading, Note, Page, Picture, Table, facts, grouped, text_column
 from separatrix.present.figure import CYCLE, GREY, MARKERS, Across, Axis, Figure, Mark, Panel

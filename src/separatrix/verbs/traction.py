@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import cycle
 from typing import TYPE_CHECKING
 
-from separatrix.ground.document import Part
+from separatrix.ground.plain_data import Part
 from separatrix.present import figure as fig
 from separatrix.present.blocks import Equation, Heading, Level, Note, Page, Picture, Table
 from separatrix.present.quantity_text import axis, by_race, fill, number_of, place_column, show

@@ -14,10 +14,9 @@ from statistics import fmean, stdev
 from typing import TYPE_CHECKING, Annotated, Any
 
 from separatrix import __version__
-from separatrix.ground.document import Document, Part
 from separatrix.ground.errors import InputError
 from separatrix.ground.files import refuse_existing, staged, writable_folder
-from separatrix.ground.plain_data import Group, Leaf, plain, shape, units_of
+from separatrix.ground.plain_data import Document, Group, Leaf, Part, plain, shape, units_of
 from separatrix.ground.quantity import ABSENT, Estimate, Quantity, alone
 from separatrix.ground.units import shown
 from separatrix.present import figure as fig

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any, NamedTuple, get_args, get_orig
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from separatrix.ground.document import Part
+    from separatrix.ground.plain_data import Part
     from separatrix.present.blocks import Page
     from separatrix.study.study import Study
 

@@ -32,9 +32,9 @@ from separatrix.friction.friction_fit import TestedFriction
 from separatrix.ground.errors import InputError, SeparatrixError
 from separatrix.ground.units import Array, MetrePerSecond, Ratio
 from separatrix.study.candidates import environment_of
-from separatrix.study.distribution import Distribution, log_normal
 from separatrix.study.keys import Setter, setter, settled_in, study_numbers
 from separatrix.study.study import BallModel, Friction, Study
+from separatrix.study.uncertain import Distribution, log_normal
 from separatrix.verdict.judgement import Judgement, judge_solution
 from separatrix.verdict.long_jobs import Runner
 

@@ -16,13 +16,12 @@ from separatrix.cage.disturbance import settings_for
 from separatrix.cage.ensemble import Ensemble
 from separatrix.cage.moving_cage import moving_cage
 from separatrix.cage.outcome import Cause, RunOutcome
-from separatrix.chain.slip_work import track_work
 from separatrix.chain.solution import Solution, solve
 from separatrix.ground.errors import InputError, together
 from separatrix.ground.units import Array, Hertz, Metre, RadianPerSecond, Ratio, Watt, format_quantity
 from separatrix.study.candidates import reference_candidate
+from separatrix.study.film import WearRate, library_rate
 from separatrix.study.study import BallModel, Candidate, Race, StabilitySettings, Study, WearRates
-from separatrix.study.wear_rates import WearRate, library_rate
 from separatrix.verdict.critical_friction import SEARCHED_FRICTION, cage_limit
 from separatrix.verdict.draws import (
     Case,
@@ -53,6 +52,7 @@ from separatrix.verdict.wear_life import (
     driven_by,
     lives,
     steady_coverage,
+    track_work,
     work_done,
 )
 

@@ -25,9 +25,12 @@ from separatrix.study.study import BallModel, RankingQuestion, StabilitySettings
 from separatrix.verdict.beyond_models import (
     NOT_FINISHED,
     PAPER_STATEMENT,
+    Change,
+    Effect,
     Moved,
     Pocket,
     beyond_motion,
+    effects_on,
     not_finite,
     not_measured,
     pocket_of,
@@ -42,7 +45,6 @@ from separatrix.verdict.critical_friction import (
     spread,
 )
 from separatrix.verdict.draws import Case, DrawnBearings, drawn_bearings
-from separatrix.verdict.effects import Change, Effect, effects_on
 from separatrix.verdict.judgement import (
     CLEAR,
     Judgement,

@@ -19,7 +19,7 @@ from separatrix.ground.units import (
     Second,
 )
 from separatrix.study.study import BallModel, Friction, MotionModel
-from separatrix.verdict.effects import Effect
+from separatrix.verdict.beyond_models import Effect
 from separatrix.verdict.judgement import Judgement, Verdict
 from separatrix.verdict.long_look import LongLook
 from separatrix.verdict.stability_curve import StabilityCurve

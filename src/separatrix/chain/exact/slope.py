@@ -13,7 +13,6 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from separatrix.chain.creep import Creep
 from separatrix.chain.exact.operator import unresolved_film
 from separatrix.chain.exact.rolling import (
     ContactProblem,
@@ -28,6 +27,7 @@ from separatrix.chain.exact.rolling import (
 )
 from separatrix.chain.exact.slip import Settled, equations, solve_step
 from separatrix.chain.film_compliance import Profile
+from separatrix.chain.hertz import Creep
 from separatrix.ground.errors import ConvergenceError, InputError
 from separatrix.ground.units import Array, Newton, Ratio
 

@@ -26,7 +26,7 @@ from separatrix.ground.errors import InputError, SeparatrixError, json_text
 from separatrix.ground.files import reading_only_in, staged
 
 if TYPE_CHECKING:
-    from separatrix.ground.document import Document
+    from separatrix.ground.plain_data import Document
     from separatrix.verbs import Computed
     from separatrix.verbs.verb import Verb
     from separatrix.verdict.long_jobs import Progress
@@ -214,7 +214,7 @@ def _ended(job: Job, folder: Folder, pipe: Connection) -> tuple[str, str]:
         with contextlib.suppress(OSError):
             pipe.send(changes)
 
-    from separatrix.ground.compiling import COMPILING
+    from separatrix.ground.compiled import COMPILING
 
     COMPILING.heard[:] = [lambda: send(message=f"The solver is {compiled_once()}")]
     try:

@@ -9,7 +9,7 @@ from functools import partial
 from operator import itemgetter
 from typing import Any
 
-from separatrix.ground.document import Part
+from separatrix.ground.plain_data import Part
 from separatrix.ground.quantity import Quantity, alone
 from separatrix.present.blocks import Block, Column, Heading, Level, Note, Page, Table, facts, text_column
 from separatrix.present.figure import Figure, Panel

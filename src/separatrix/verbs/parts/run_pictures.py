@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicHermiteSpline
 
-from separatrix.ground.document import Part
+from separatrix.ground.plain_data import Part
 from separatrix.ground.units import Array, Metre
 from separatrix.present import figure as fig
 from separatrix.present.quantity_text import axis, show

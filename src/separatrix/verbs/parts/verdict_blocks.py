@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from math import hypot, inf, log, pi
 
-from separatrix.ground.document import Part
+from separatrix.ground.plain_data import Part
 from separatrix.present import quantity_text as q
 from separatrix.present.blocks import Block, Cell, Column, Equation, Level, Note, Table, grouped, text_column
 from separatrix.present.figure import BLUE, GREY, Across, Band, Label, Mark, Panel, Trace
