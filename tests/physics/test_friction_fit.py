@@ -229,8 +229,8 @@ def test_repeats_on_one_sample_do_not_tell_how_samples_scatter():
     assert not two.at().assumed_scatter
 
 
-def test_the_pressure_in_the_pocket_is_that_of_hertz_ellipse():
-    """Second road: the contact module of the races, with equal curvatures 2/D."""
+def test_pressure_and_sliding_in_the_pocket():
+    """Hertz by a second road: the contact module of the races, with equal curvatures 2/D."""
     study = read_study("cryogenic-turbopump")
     D, ball, wall = 0.0111125, study.bearing.ball_material, study.bearing.ring_material
     K = hertz_coefficient(D, ball, wall)
@@ -238,10 +238,7 @@ def test_the_pressure_in_the_pocket_is_that_of_hertz_ellipse():
     radius = contact_radius(80.0, K, D)
     assert radius == pytest.approx(ellipse.semi_major, rel=1e-12)
     assert 80.0 / (pi * radius**2) == pytest.approx(2.0 / 3.0 * ellipse.max_pressure, rel=1e-12)
-
-
-def test_a_ball_slides_in_its_pocket_by_the_spin_across_its_orbit():
-    """Half its diameter times the spin about the axes across its orbit; that along it moves nothing there."""
+    # half its diameter times the spin about the axes across its orbit; that along it moves nothing there
     assert sliding_speed(np.array([[0.0, 0.0, 900.0], [3.0, 4.0, 0.0]]), 2.0) == pytest.approx([0.0, 5.0])
 
 

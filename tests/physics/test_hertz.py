@@ -177,17 +177,13 @@ def test_heathcote_bends_by_the_curvature(race, sign):
     assert creep.ratio(y) == pytest.approx(creep_of_points(race, y), rel=1e-9)  # rounding
 
 
-def test_spin_creep_is_spin_speed_over_rolling_speed():
-    """At y, spin moves the surfaces apart by dw_spin y; they roll at about dw_roll R_x: s = ratio/R_x."""
+def test_creep_adds_its_parts_and_that_of_spin_is_spin_over_rolling_speed():
+    """Spin moves the surfaces apart by dw_spin y, they roll at dw_roll R_x. xi = delta + s y + q y^2."""
     D, gamma = BEARING.ball_diameter, BEARING.ball_diameter * math.cos(ANGLE) / BEARING.pitch_diameter
     inner = contact_creep(BEARING, Race.INNER, ANGLE, 0.3)
     outer = contact_creep(BEARING, Race.OUTER, ANGLE, -0.3)
     assert inner.spin == pytest.approx(0.3 * 2.0 / D / (1.0 - gamma), rel=1e-14)
     assert outer.spin == pytest.approx(-0.3 * 2.0 / D / (1.0 + gamma), rel=1e-14)
-
-
-def test_creep_adds_its_parts():
-    """xi(y) = delta + s y + q y^2."""
     creep = Creep(spin=2.0, curvature=-3.0)
     assert creep.ratio(np.array([0.0, 1.0, 2.0]), 0.5) == pytest.approx([0.5, -0.5, -7.5], abs=1e-15)
 

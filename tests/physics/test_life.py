@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -9,11 +10,11 @@ from mobile_balls import study_of
 from scipy.special import ndtr, ndtri
 
 import separatrix
-from separatrix import LifeTable, solve
+from separatrix import Cause, LifeTable, RunOutcome, StabilitySettings, moving_cage, run_ensemble, solve
 from separatrix.chain.contacts import bearing_state
 from separatrix.study.study import KinematicModel, Race, WearRates
 from separatrix.verdict import wear_life
-from separatrix.verdict.critical_friction import PLACES, Count, steepness
+from separatrix.verdict.critical_friction import PLACES, SEARCHED_FRICTION, Count, steepness
 from separatrix.verdict.life_table import (
     FREELY,
     LEAST_CRITICAL,
@@ -22,6 +23,7 @@ from separatrix.verdict.life_table import (
     _bearing_wear,
     _drawn,
     _life,
+    _node,
     _tests,
     life,
     wear_rates,
@@ -306,6 +308,17 @@ def test_a_cage_without_candidates_has_the_name_of_its_material_else_of_its_stud
         assert (found.candidate, FREELY in found.notes) == (name, False)
     # of a critical friction of 0 the cage counts as unstable with any friction
     assert FREELY in life(one, revolutions=1e6, draws=64, runner=Tabulated(LEAST_CRITICAL)).notes
+
+
+def test_a_cage_that_its_land_drives_counts_as_unstable():
+    """With any friction in its pockets, as `rank` calls it UNSTABLE; a calm one has no critical friction."""
+    solution, settings = solve(WHEEL), StabilitySettings(duration=1e-3, kicks=(0.5,))
+    found = run_ensemble(moving_cage(solution, 0.1), settings, kicks=(0.5,), runs=16)
+    of_these = SimpleNamespace(ensemble=lambda *_, **__: found)
+    found.outcome[0] = RunOutcome.SETTLES
+    assert _node(solution, settings, of_these).critical == SEARCHED_FRICTION
+    found.outcome[0], found.cause[0] = RunOutcome.WHIRLS, Cause.LAND_FRICTION
+    assert _node(solution, settings, of_these).critical == LEAST_CRITICAL
 
 
 @pytest.mark.parametrize(("holds", "is_thin"), [(1e-7, False), (1e-6, True)])

@@ -194,7 +194,7 @@ def row(document, name):
     return next(row for row in document["materials"] if row["name"] == name)
 
 
-def test_each_friction_has_the_scatter_that_is_known_of_it(small):
+def test_each_friction_has_the_scatter_that_is_known_of_it(small, capsys):
     """A measured one that of a new cage, a stated one its own; what was not measured is null, with why."""
     missing = row(small, "C")
     assert missing["reason"] == "not measured in air"
@@ -207,10 +207,7 @@ def test_each_friction_has_the_scatter_that_is_known_of_it(small):
     sources = {one["name"]: one["source"] for one in small["inputs"]}
     known = {"film.thickness": "study", "ranking.A.air": "measured"}
     assert known.items() <= sources.items()
-
-
-def test_threads_change_nothing(small, capsys):
-    """To the last bit."""
+    # threads change nothing, to the last bit
     assert asked(capsys, "--jobs", "1") == small
 
 

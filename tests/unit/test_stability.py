@@ -213,11 +213,16 @@ def test_unresolved_runs_are_told(monkeypatch):
     found.outcome[0] = (RunOutcome.WHIRLS, *[RunOutcome.UNRESOLVED] * 4)
     found.cause[0] = (Cause.NONE, Cause.NOT_FINITE, Cause.NO_CONTACT, Cause.FALLING, Cause.LEFT_POCKET)
     monkeypatch.setattr(runner.Runner, "ensemble", lambda *_, **__: found)
-    count = responses(cage, StabilitySettings(), (0.5,), Runner())[0.5].add(cell_of(0.1), 5)
+    counts = responses(cage, StabilitySettings(), (0.5,), Runner())[0.5]
+    count = counts.add(cell_of(0.1), 5)
     # A ball at the edge of its wall counts as a whirl: where all balls leave their pockets no motion settles.
     assert (count.whirling, count.runs) == (2, 5)
     (note,) = count.notes
     assert re.search(r"2 of 5 runs from 0.5 m/s at friction 0.1 .* not whirling", note)
+    found.outcome[0], found.cause[0] = RunOutcome.WHIRLS, Cause.LAND_FRICTION
+    count = counts.add(cell_of(0.2), 5)
+    assert count.whirling == 0
+    assert "land drives 5 of 5 runs from 0.5 m/s at friction 0.2" in count.notes[0]
 
 
 @pytest.mark.parametrize("ball", [BallModel.TRACTION, BallModel.FREE])

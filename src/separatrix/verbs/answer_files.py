@@ -69,9 +69,9 @@ def asked_by(study: Study) -> Document:
 
 
 def notes_of(answer: object, asked: Study) -> tuple[str, ...]:
-    """Return what the reading of a study and its answer note; of those alike but for numbers the first."""
+    """Return what an answer and its study note; of those alike but for numbers the first."""
     own: tuple[str, ...] = getattr(answer, NOTES, ())
-    return tuple(grouped([*asked.notes, *own]))
+    return tuple(grouped([*own, *asked.notes]))
 
 
 def page_of_document(verb: Tool, found: Document, where: str = "The answer") -> Page:

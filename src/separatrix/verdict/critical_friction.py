@@ -32,15 +32,21 @@ from separatrix.verdict.judgement import (
     NORMAL_95,
     UNEVEN,
     has_uneven_orbits,
+    is_taken_by_land,
+    kick_counts,
     transmitted_force,
     whirl_share,
     wilson_interval,
 )
 from separatrix.verdict.long_jobs import FEWER, Runner, cost
-from separatrix.verdict.reasons import ball_words
+from separatrix.verdict.reasons import ball_words, driven_by_land
 
 UNRESOLVED = (
     "Curve: {} of {} runs from {:g} m/s at friction {:.3g} are unresolved; they count as not whirling."
+)
+BY_LAND = (
+    "Curve: friction on the land drives {} of {} runs from {:g} m/s at friction {:.3g} round it; they count "
+    "as not whirling, as friction in the pockets slows them. `rank` judges what the land does."
 )
 
 ALIKE: Ratio = 0.08
@@ -111,11 +117,14 @@ def responses(
         found = runner.ensemble(at, settings, kicks=(kick,), runs=runs, first_run=first_run)
         left = found.cause == Cause.LEFT_POCKET
         unresolved = (found.outcome == RunOutcome.UNRESOLVED) & ~left
-        open_ends = int(np.count_nonzero(unresolved & (found.cause != Cause.FALLING)))
         # a motion that still falls does not whirl
-        notes = (UNRESOLVED.format(open_ends, runs, kick, friction),) if open_ends else ()
-        whirling = (found.outcome == RunOutcome.WHIRLS) & (found.cause != Cause.LAND_FRICTION)
-        return Count(int(np.count_nonzero(left | whirling)), runs, notes)
+        open_ends = int(np.count_nonzero(unresolved & (found.cause != Cause.FALLING)))
+        whirling = (found.outcome == RunOutcome.WHIRLS) & ~driven_by_land(found)
+        (ends,) = kick_counts(found)
+        notes = [UNRESOLVED.format(open_ends, runs, kick, friction)] if open_ends else []
+        if is_taken_by_land(ends):
+            notes.append(BY_LAND.format(ends.whirls_by_land, runs, kick, friction))
+        return Count(int(np.count_nonzero(left | whirling)), runs, tuple(notes))
 
     return {kick: Response(partial(look, kick), settings.runs) for kick in kicks}
 

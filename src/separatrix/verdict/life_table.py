@@ -30,7 +30,7 @@ from separatrix.verdict.draws import (
     sobol_points,
     uncertain_inputs,
 )
-from separatrix.verdict.judgement import is_calm
+from separatrix.verdict.judgement import is_calm, is_taken_by_land, kick_counts
 from separatrix.verdict.long_jobs import Interrupted, Load, Runner
 from separatrix.verdict.parameter_axes import TIME_SHARE, varied
 from separatrix.verdict.stability_curve import expected_load
@@ -74,8 +74,8 @@ LEAST_CRITICAL: Ratio = 1e-3
 """Of the table, for the logarithm of one that is 0."""
 
 FREELY = (
-    "At places of the table the cage whirls without friction in its pockets (the land may drive it): there "
-    "it counts as unstable with any, although friction may calm it."
+    "At places of the table the cage whirls without friction in its pockets, or friction on the land drives "
+    "it: there it counts as unstable with any, although friction in the pockets may calm it."
 )
 
 NARROWER = (1.0, 0.5, 0.2, 0.05)
@@ -362,22 +362,26 @@ def _clearances(study: Study, key: str, new: Metre) -> list[Metre]:
 
 
 def _node(solution: Solution, settings: StabilitySettings, runner: Runner) -> Node:
-    """Critical friction at a place, and the work of the pockets below and above it."""
+    """Critical friction at a place, and the work of the pockets below and above it.
+
+    Where friction on the land drives it below, it is that of a cage that whirls with any.
+    """
     limit = cage_limit(solution, settings, runner)
     at = limit.own_critical_friction
     critical = SEARCHED_FRICTION if at is None else max(at, LEAST_CRITICAL)
     ball = BallModel.FREE if limit.critical_ball == "free" else None
 
-    def sliding(friction: Ratio, *, whirls: bool) -> tuple[Watt, Watt]:
+    def followed(friction: Ratio) -> Ensemble:
         cage = moving_cage(solution, min(friction, SEARCHED_FRICTION), ball)
-        found = runner.ensemble(cage, settings, kicks=(limit.critical_kick,), runs=WORK_RUNS)
-        return _mean(found, whirls=whirls)
+        return runner.ensemble(cage, settings, kicks=(limit.critical_kick,), runs=WORK_RUNS)
 
-    calm = sliding(CALM * critical, whirls=False)
-    whirl = sliding(WHIRLING * critical, whirls=True)
+    below, above = followed(CALM * critical), followed(WHIRLING * critical)
+    calm, whirl = _mean(below, whirls=False), _mean(above, whirls=True)
     whirl = whirl if whirl[0] else calm
     pockets, lands = (calm[0], whirl[0]), (calm[1], whirl[1])
-    return Node(critical, limit.steepness or STEEP, pockets, lands, limit.notes)
+    is_taken = is_taken_by_land(kick_counts(below)[0])
+    steepness = limit.steepness or STEEP
+    return Node(LEAST_CRITICAL if is_taken else critical, steepness, pockets, lands, limit.notes)
 
 
 def _mean(found: Ensemble, *, whirls: bool) -> tuple[Watt, Watt]:

@@ -246,7 +246,7 @@ def _notes(
     judged = [(row.name, row.judgement) for row in rows if not isinstance(row, NotMeasured) and row.judgement]
     moved = [Moved(n, j.largest_contact_force, j.largest_offset) for n, j in judged]
     reference = question.cages[question.reference]
-    return (*filter(None, notes), *beyond_motion(reference, moved))
+    return (*beyond_motion(reference, moved), *filter(None, notes))
 
 
 def _question(
