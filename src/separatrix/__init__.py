@@ -15,9 +15,8 @@ _PUBLIC = {
     "cage": "Cause CourseAnalysis Ensemble History MovingCage RunOutcome analyse linear_critical_friction "
     "linear_whirl_frequency moving_cage run_ensemble",
     "chain.contacts": "BearingState RaceContact RaceTraction",
-    "chain.creep": "Creep contact_creep",
     "chain.equilibrium": "Equilibrium contact",
-    "chain.hertz": "ContactEllipse contact_ellipse contact_modulus ellipse_of_axes "
+    "chain.hertz": "ContactEllipse Creep contact_creep contact_ellipse contact_modulus ellipse_of_axes "
     "ellipse_of_curvatures race_curvatures",
     "chain.race_traction": "BallTraction",
     "chain.ball_mobility": "LinearMobility Mobility SlipLaw",

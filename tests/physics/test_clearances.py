@@ -11,7 +11,7 @@ from scipy.linalg import solve_banded
 
 from separatrix import InputError, moving_cage, read_study, solve
 from separatrix.chain.clearances import TurningRing, mean_expansion, running_clearances
-from separatrix.chain.land_fluid import annulus_mass, decay_rate, land_fluid
+from separatrix.chain.heat_balance import annulus_mass, decay_rate, land_fluid
 from separatrix.study.ball_bearing import Expansion
 from separatrix.study.keys import with_values
 from separatrix.study.study import ClearanceState, Guidance, Material, PocketShape

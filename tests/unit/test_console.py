@@ -17,7 +17,8 @@ import pytest
 from commands import COMMAND, PATIENCE, wait_until
 
 from separatrix.front import console, main
-from separatrix.ground.compiled import COMPILING, part
+from separatrix.ground.compiled import part
+from separatrix.ground.compiling import COMPILING
 from separatrix.ground.files import staged, writable_folder
 from separatrix.verdict import long_jobs
 

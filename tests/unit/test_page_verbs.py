@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from test_reference_tables import missing
 
 from separatrix import InputError, read_study, restitution_factor, wilson_interval
-from separatrix.ground.compiled import COMPILING
+from separatrix.ground.compiling import COMPILING
 from separatrix.ground.plain_data import Part, part_of
 from separatrix.ground.quantity import Estimate, Quantity, alone, in_column
 from separatrix.present.blocks import Level, Picture

@@ -27,7 +27,7 @@ from separatrix.cage import Ensemble, moving_cage, run_ensemble, settings_for
 from separatrix.cage.ensemble import Runs, follow_alike
 from separatrix.front import console, main
 from separatrix.front.console import Pace
-from separatrix.ground.compiled import COMPILING
+from separatrix.ground.compiling import COMPILING
 from separatrix.verdict import cluster as clusters
 from separatrix.verdict import long_jobs as jobs
 from separatrix.verdict.cluster import cluster

@@ -175,7 +175,7 @@ class Pace:
 
     def __call__(self, done: float, total: float) -> None:
         """Take in how far the work is; the first call, with nothing done, is its beginning."""
-        from separatrix.ground.compiled import COMPILING
+        from separatrix.ground.compiling import COMPILING
 
         now = COMPILING.clock()
         if self._begun is None:
@@ -192,7 +192,7 @@ class Pace:
 
 def compiled_once() -> str:
     """Return that, and why, in words that go on."""
-    from separatrix.ground.compiled import COMPILING
+    from separatrix.ground.compiling import COMPILING
 
     why = f": {COMPILING.reason}" if COMPILING.reason else ""
     return f"compiled once on this machine, about a minute in all{why}."
@@ -229,7 +229,7 @@ def progress_bar(title: str, *, quiet: bool) -> Iterator[Life]:
     if quiet or sys.stderr is None:
         yield life
         return
-    from separatrix.ground.compiled import COMPILING
+    from separatrix.ground.compiling import COMPILING
 
     is_terminal, width = sys.stderr.isatty(), shutil.get_terminal_size().columns - 1
 

@@ -1,7 +1,5 @@
 """How kernels are compiled: strict floating point, without the interpreter's lock, and cached.
 
-A callback is called when compilation begins; no garbage is collected until it ends; its time is known.
-
 numba keeps compiled code until the file of the function changes. It does not see a change in another file,
 although a constant or a function of that file may be compiled in. So the code is cached in a folder that is
 named after all that can be compiled in: the versions of Python, numpy and numba, and every file of the
@@ -22,7 +20,6 @@ classes and methods of `numba.core.caching`, by which it is kept and loaded.
 from __future__ import annotations
 
 import contextlib
-import gc
 import hashlib
 import os
 import re
@@ -37,48 +34,10 @@ from typing import Any, ParamSpec, TypeVar, cast
 import llvmlite.binding
 import numba
 import numpy as np
-from numba.core import caching, event
+from numba.core import caching
 from numba.core.runtime.nrt import rtsys
 
-from separatrix.ground.units import Second
-
-
-class Compiling(event.Listener):
-    """Calls `heard` when a compilation begins; no garbage is collected until it ends, which saves a fifth."""
-
-    def __init__(self) -> None:
-        self.heard: list[Callable[[], None]] = []
-        self.reason = ""  # why the kernels that came with the package are not used; empty if none came
-        self._depth, self._collects = 0, True
-        self._seconds, self._begun = 0.0, 0.0
-
-    def on_start(self, _: object) -> None:
-        """Enter a kernel, or a part of it: numba compiles one at a time."""
-        if self._depth == 0:
-            self._collects = gc.isenabled()
-            gc.disable()
-            self._begun = time.monotonic()
-            for tell in self.heard:
-                tell()
-        self._depth += 1
-
-    def on_end(self, _: object) -> None:
-        """Leave it."""
-        self._depth -= 1
-        if self._depth == 0:
-            self._seconds += time.monotonic() - self._begun
-            if self._collects:
-                gc.enable()
-
-    def clock(self) -> Second:
-        """Return a time that stands still while kernels are compiled."""
-        now = time.monotonic()
-        return (self._begun if self._depth else now) - self._seconds
-
-
-COMPILING = Compiling()
-event.register("numba:compile", COMPILING)  # type: ignore[no-untyped-call]
-
+from separatrix.ground.compiling import COMPILING
 
 CONFIG = vars(numba.config)
 """Settings of numba: CACHE_DIR is that of the variable NUMBA_CACHE_DIR."""

@@ -13,8 +13,8 @@ from typing import Any, NamedTuple
 from separatrix.cage.closed_forms import linear_whirl_frequency
 from separatrix.cage.disturbance import with_kicks
 from separatrix.cage.moving_cage import MovingCage, moving_cage
+from separatrix.chain.heat_balance import land_fluid
 from separatrix.chain.impact_restitution import SOLID_LUBRICATION_LIMIT, hertz_coefficient
-from separatrix.chain.land_fluid import land_fluid
 from separatrix.chain.pocket_friction import contact_radius, pocket_speed
 from separatrix.chain.solution import Solution
 from separatrix.ground.units import (

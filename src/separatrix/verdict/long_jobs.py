@@ -28,7 +28,7 @@ from separatrix.cage.moving_cage import MovingCage, moving_cage, turned_forward
 from separatrix.cage.numbers import numbers_of, step_length
 from separatrix.cage.outcome import MOST
 from separatrix.chain.solution import Solution
-from separatrix.ground.compiled import COMPILING
+from separatrix.ground.compiling import COMPILING
 from separatrix.ground.errors import InputError
 from separatrix.ground.units import MetrePerSecond, Ratio, Second
 from separatrix.study.study import StabilitySettings

@@ -16,7 +16,7 @@ from concurrent.futures import Executor, Future, wait
 import numpy as np
 
 from separatrix.cage.ensemble import Ensemble, Piece, Runs, Stop, ensemble_of, follow, follow_alike, pieces_of
-from separatrix.ground.compiled import COMPILING
+from separatrix.ground.compiling import COMPILING
 from separatrix.ground.units import Array, MetrePerSecond, Second
 
 TOGETHER = 256

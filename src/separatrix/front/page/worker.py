@@ -214,7 +214,7 @@ def _ended(job: Job, folder: Folder, pipe: Connection) -> tuple[str, str]:
         with contextlib.suppress(OSError):
             pipe.send(changes)
 
-    from separatrix.ground.compiled import COMPILING
+    from separatrix.ground.compiling import COMPILING
 
     COMPILING.heard[:] = [lambda: send(message=f"The solver is {compiled_once()}")]
     try:
