@@ -1,4 +1,4 @@
-r"""Where the power of a bearing goes: friction, drag of the fluid, temperatures; the fluid in the gap of a land.
+r"""Where the power of a bearing goes: friction, drag of the fluid, temperatures; the fluid in a land gap.
 
 Seen from the outer ring, whose speed is taken off all others, the shaft gives what friction and fluid take,
 
