@@ -42,10 +42,10 @@ def test_notes_are_in_the_answer_and_its_document(tmp_path):
     """MoS2 on the races: eta is 0; and what the reading of the study notes, if it was read before, too."""
     slippery = '[film]\nrace_friction = 0.02\n[operation]\ntemperature = "120 K"\n'
     answer = api.restitution(separatrix.read_study(written(tmp_path, SMALL + slippery)))
-    read, eta = answer.notes
+    eta, read = answer.notes
     assert "not stated at 120 K" in read
     assert eta.startswith("eta = 0")
-    assert answer.document()["warnings"] == [read, eta]
+    assert answer.document()["warnings"] == [eta, read]
     assert eta[:70] in " ".join(answer.summary().split())
 
 
