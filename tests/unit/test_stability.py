@@ -222,7 +222,7 @@ def test_unresolved_runs_are_told(monkeypatch):
     found.outcome[0], found.cause[0] = RunOutcome.WHIRLS, Cause.LAND_FRICTION
     count = counts.add(cell_of(0.2), 5)
     assert count.whirling == 0
-    assert "land drives 5 of 5 runs from 0.5 m/s at friction 0.2" in count.notes[0]
+    assert "land drives 5 of 5 runs from 0.5 m/s at friction 0.196 round it" in count.notes[0]
 
 
 @pytest.mark.parametrize("ball", [BallModel.TRACTION, BallModel.FREE])
