@@ -95,10 +95,7 @@ def test_free_balls_lead_by_the_integral_of_their_speed():
     slope = (cage.free_leads(azimuth + step) - cage.free_leads(azimuth - step)) / (2.0 * step)
     error = 2e-10  # step^2/6 of the third slope, below 1 m/s, 2e-11; rounding of a lead over the step, 2e-11
     assert cage.cage_speed * slope == pytest.approx(waves_at(*waves, azimuth), rel=0.0, abs=error)
-
-
-def test_the_ball_that_a_radial_load_presses_runs_slower():
-    """At azimuth 0 the groove is deeper, the contact angle smaller, gamma = D cos/d_m larger: A_1 < 0."""
+    # the loaded ball is slower: its groove is deeper, the contact angle smaller, gamma = D cos/d_m larger
     assert moving_cage(solve(operation(radial_load=400.0)), 0.0).orbital_cosines[0] < 0.0
 
 

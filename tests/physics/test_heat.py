@@ -50,13 +50,10 @@ def test_drag_on_a_ball_in_liquid_nitrogen(swirl, force):
     assert found == pytest.approx(force, rel=1e-4)
 
 
-def test_drag_of_a_slow_sphere_is_that_of_stokes():
-    """3 pi mu D v at Reynolds numbers of 1e-4, where the next term is 0.15 Re^0.687."""
-    assert ball_drag(LN2, 1e-3, 2e-8) == pytest.approx(3.0 * math.pi * LN2.viscosity * 1e-3 * 2e-8, rel=1e-3)
-
-
 def test_fluid_on_spin_and_faces():
     """Of another program, to its digits: a ball, the outside and the inside of the cage."""
+    # Stokes: 3 pi mu D v at Reynolds numbers of 1e-4, where the next term is 0.15 Re^0.687
+    assert ball_drag(LN2, 1e-3, 2e-8) == pytest.approx(3.0 * math.pi * LN2.viscosity * 1e-3 * 2e-8, rel=1e-3)
     spin = math.hypot(4083.218, 1942.614)
     assert spin_moment(LN2, 11.1125e-3, spin) == pytest.approx(4.3385e-4, rel=1e-3)  # 0.146 has three digits
     assert 13 * spin * spin_moment(LN2, 11.1125e-3, spin) == pytest.approx(25.5, abs=0.05)

@@ -18,7 +18,7 @@ from separatrix.cage.rows import LOOK_COLUMNS, of
 from separatrix.verdict.critical_friction import cage_at
 from separatrix.verdict.judgement import judge_solution
 from separatrix.verdict.long_jobs import Runner
-from separatrix.verdict.long_look import LongLook, long_look, seen_for_longer
+from separatrix.verdict.long_look import long_look, look_record, seen_for_longer
 from separatrix.verdict.reasons import CageMotion, largest_room
 
 RUNS, DURATION = 8, 0.1
@@ -119,7 +119,7 @@ def test_a_whirl_weaker_than_the_loads_rolls_whatever_the_duration():
     assert np.count_nonzero(longer.outcome != found.outcome) <= 1
 
 
-def seen_on_a_land(land_friction: float) -> tuple[Judgement, LongLook | None]:
+def seen_on_a_land(land_friction: float) -> tuple[Judgement, Judgement | None]:
     """Judgement and long look of a gyro's cage of 32 mg that rubs on its inner land."""
     with TemporaryDirectory() as folder:
         study = sane_study(1, Path(folder))
@@ -132,18 +132,22 @@ def seen_on_a_land(land_friction: float) -> tuple[Judgement, LongLook | None]:
 def test_a_land_that_takes_over_a_calm_cage_keeps_it_from_stable():
     """At a land friction of 0.4, 15 of 16 runs settle within 0.1 s, and most whirl within 1 s."""
     judged, look = seen_on_a_land(0.4)
-    assert (judged.verdict, look.count.runs) == (Verdict.STABLE, 16)
-    assert look.duration == pytest.approx(1.0, rel=0.01)  # to the end of a look, of 2 ms
-    assert look.count.whirls == look.count.whirls_by_land > 8  # 12
+    assert (judged.verdict, look.worst.runs) == (Verdict.STABLE, 16)
+    assert look.longest_run == pytest.approx(1.0, rel=0.01)  # to the end of a look, of 2 ms
+    assert look.worst.whirls == look.worst.whirls_by_land > 8  # 12
+    kept = look_record(look, 0.05)
+    assert (kept.duration, kept.count, kept.reason) == (look.longest_run, look.worst, look.reason)
     assert 0.5 < look.largest_land_force < 5.0  # N, 1.6; the weight is 0.3 mN
     assert (open_end := seen_for_longer(judged, look, None)).verdict is Verdict.UNDECIDED
-    assert f"{look.count.whirls} of 16 runs end whirling round the land" in open_end.reason
+    assert f"{look.worst.whirls} of 16 runs end whirling round the land" in open_end.reason
     longer = seen_for_longer(judged, look, look)
-    assert (longer.verdict, longer.is_by_land, longer.worst) == (Verdict.UNSTABLE, True, look.count)
-    assert longer.probability_stable == look.count.probability_stable < 0.5
-    few, some = (
-        replace(look, count=replace(look.count, settles=16 - n, whirls=n, whirls_by_land=n)) for n in (1, 2)
-    )
+    assert (longer.verdict, longer.is_by_land, longer.worst) == (Verdict.UNSTABLE, True, look.worst)
+    assert longer.probability_stable == look.worst.probability_stable < 0.5
+    # with the evidence of these runs, and the duration that was asked for
+    assert (longer.cage_motion, longer.rubbing_power) == (CageMotion.WHIRLING, look.rubbing_power)
+    assert (longer.duration, longer.longest_run) == (judged.duration, look.longest_run)
+    counts = (replace(look.worst, settles=16 - n, whirls=n, whirls_by_land=n) for n in (1, 2))
+    few, some = (replace(look, by_kick=(one,)) for one in counts)
     assert seen_for_longer(judged, few, look) == judged  # less than a tenth
     assert seen_for_longer(judged, look, some).verdict is Verdict.UNDECIDED
     calm = seen_for_longer(judged, look, few)
@@ -152,7 +156,7 @@ def test_a_land_that_takes_over_a_calm_cage_keeps_it_from_stable():
     assert seen_for_longer(unstable := replace(judged, verdict=Verdict.UNSTABLE), look, look) == unstable
     # at 0.05 none whirls; without friction, as without a land, nothing could drive it
     judged, look = seen_on_a_land(0.05)
-    assert (look.count.whirls, look.largest_land_force) == (0, 0.0)
+    assert look.worst.whirls == 0
     assert seen_on_a_land(0.0)[1] is None
 
 

@@ -102,9 +102,6 @@ def test_every_public_name_can_be_imported():
         assert getattr(separatrix, name) is not None
     with pytest.raises(AttributeError, match="no attribute 'separator'"):
         separatrix.separator  # noqa: B018
-
-
-def test_no_base_name_stands_twice():
-    """A reader guesses the file from the name of the thing."""
+    # nor does a file's name stand twice: a reader guesses the file from the name of the thing
     names = [path.name for path in MODULES if path.name != "__init__.py"]
     assert sorted(names) == sorted(set(names))

@@ -381,11 +381,14 @@ def test_the_headline_says_whether_uneven_orbits_decide(friction, count):
 
 
 def test_the_headline_names_a_land_that_drives_the_cage():
-    """And states neither that the pockets decide nor that a land so tight is not enough."""
+    """Not that the pockets decide, that a land so tight is not enough, or that it keeps the cage stable."""
     row = Part(candidate("UNSTABLE").values | {"driven_by_land": True, "safety_factor_low": None}, {})
-    answer = Part(NO_EFFECT.values | {"cage": {"land_friction": 0.157}}, {})
+    rest = {"cage": {"land_friction": 0.157}, "duration": 0.3, "chain": {}}
     said = "Phenolic: friction on the land, 0.157, and not in the pockets, drives the whirl."
-    assert [*deciding(answer, [row])] == [said]
+    assert [*deciding(Part(NO_EFFECT.values | rest, {}), [row])] == [said]
+    wide = {"name": "wide_land", "change": "a wide land", CRITICAL: 0.01, f"{CRITICAL}_low": 0.01}
+    answer = Part({"effects": [wide | {f"{CRITICAL}_high": 0.01}], "candidate": "Phenolic"} | rest, {})
+    assert "which raises the critical friction" in [*deciding(answer, [row])][-1]
 
 
 def test_heat_of_rubbing_has_the_digits_of_the_headline():
@@ -488,6 +491,11 @@ def test_the_paper_differs_by_the_motion_too(motion, ball):
     told = by_paper(answer, [row], ["Phenolic"])[0].text
     assert ("a ball that may spin in an impact resists it with" in told) is (ball == "auto")
     assert ("the cage also tilts" in told) is (motion == "space")
+    row = Part(row.values | {"verdict": "UNSTABLE", "driven_by_land": True, "paper_verdict": "STABLE"}, {})
+    told = by_paper(Part(answer.values | {"duration": 0.3}, {}), [row], ["Phenolic"])[0].text
+    assert told.endswith(
+        "which friction on the land drives: its own runs are in the plane and end after 0.3."
+    )
 
 
 def test_a_map_says_what_is_next_to_the_study_where_it_changes_and_what_each_point_has():

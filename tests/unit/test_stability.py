@@ -139,12 +139,6 @@ def test_one_kick_without_a_tenth_or_nine_leaves_the_band_without_that_end(monke
     assert point.reason == reason
 
 
-def test_an_end_of_the_ladder_that_is_not_clear_is_looked_at_again():
-    """Half of the first 16 grow without friction, of all an eighth: P is below one half there."""
-    first = lambda f, number, runs: Count(8 if number == 0 else 0 if f < 0.1 else runs, runs)  # noqa: E731
-    assert isinstance(Response(first, 64).crossing(0.5, 96, 0.1), Crossing)
-
-
 def test_a_crossing_far_from_every_count_is_counted_at():
     """P is 0 up to 0.33 and 0.9 from 0.7 on, and the guess lies far below: runs are spent between the two."""
     spent = []
@@ -204,6 +198,9 @@ def test_runs_are_numbered_one_after_the_other_and_few_are_wasted_far_from_the_c
     ends = [0, *accumulate(runs for _, runs in asked)]
     assert [first for first, _ in asked] == ends[:-1]
     assert 96 <= ends[-1] <= 96 + 16 * 9
+    # half of the first 16 grow without friction, of all an eighth: that end is looked at again
+    first = lambda f, number, runs: Count(8 if number == 0 else 0 if f < 0.1 else runs, runs)  # noqa: E731
+    assert isinstance(Response(first, 64).crossing(0.5, 96, 0.1), Crossing)
 
 
 def test_unresolved_runs_are_told(monkeypatch):

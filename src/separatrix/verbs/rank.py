@@ -66,7 +66,6 @@ def page(answer: Part) -> Page:
     known = [row for row in rows if judged(row)]
     apart = [row.name for row in known if row.get("paper_verdict") not in (None, row.verdict)]
     paper = f"the paper's method{'' if apart else ' (the same verdicts)'}"
-    kicks = ", ".join(of.disturbances(answer))
     every = [(one.name, row.name, row) for one in answer.environments for row in one.materials]
     every += [("overall", row.name, row) for row in answer.overall]
     overall = verdicts("Overall: mean friction over the measured environments", answer.overall, LONG)
@@ -77,8 +76,7 @@ def page(answer: Part) -> Page:
         *by_paper(answer, known, apart),
         *over_inputs(answer, rows),
         *pictures(answer, own),
-        *[Heading(q.fill(answer, f"Evidence: {answer.runs} runs of {{duration}} from each of {kicks}"))]
-        * bool(known),
+        *[Heading(evidence_head(answer, known))] * bool(known),
         Table(f"{own.name}, evidence", evidence(known), tuple(known)),
         Note(EVIDENCE, "legend", LONG),
         *reasons(rows),
@@ -140,14 +138,30 @@ def by_paper(answer: Part, known: Sequence[Part], apart: Sequence[str]) -> list[
     ball = f"{ball}friction of its races" * (answer.ball_model != "damper")
     tilts = "the cage also tilts and moves along the axis" * (answer.cage.motion == "space")
     full = ", and ".join(filter(None, (tilts, ball)))
-    why = q.fill(answer.chain, f" It differs for {', '.join(apart)}: in the full model {full}.")
+    driven = [row.name for row in rows if row.name in apart and of.is_by_land(row)]
+    others = [name for name in apart if name not in driven]
+    why = ""
+    if driven:
+        land = "which friction on the land drives: its own runs are in the plane and end after {duration}."
+        why = q.fill(answer, f" It differs for {', '.join(driven)}, {land}")
+    if others:
+        why += q.fill(answer.chain, f" It differs for {', '.join(others)}: in the full model {full}.")
     each = by_verdict((row.paper_verdict, row.name) for row in rows)
-    caption = f"{q.begun(model)}.{why if apart else ''}"
+    caption = f"{q.begun(model)}.{why}"
     return [
         *([Note(f"The paper's method ({model}): {each}.{why}", level=BRIEF)] if apart else []),
         Heading("The paper's method", LONG, 3),
         Table("The paper's method", columns, tuple(rows), caption, LONG),
     ]
+
+
+def evidence_head(answer: Part, rows: Sequence[Part]) -> str:
+    """Return how many runs are behind the verdicts, from where, how long; longer after a long look."""
+    kicks, look = of.disturbances(answer), answer.get("long_look")
+    if look and any(row.longest_run >= look.duration for row in rows):
+        longer = q.show(look.count, "kick")
+        kicks = [f"{one} ({q.show(look, 'duration')})" if one == longer else one for one in kicks]
+    return q.fill(answer, f"Evidence: {answer.runs} runs of {{duration}} from each of {', '.join(kicks)}")
 
 
 def evidence(rows: Sequence[Part]) -> tuple[Column, ...]:

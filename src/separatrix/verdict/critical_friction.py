@@ -46,7 +46,7 @@ UNRESOLVED = (
 )
 BY_LAND = (
     "Curve: friction on the land drives {} of {} runs from {:g} m/s at friction {:.3g} round it; they count "
-    "as not whirling, as friction in the pockets slows them. `rank` judges what the land does."
+    "as not whirling here, as friction in the pockets slows them, and as whirling in a verdict."
 )
 
 ALIKE: Ratio = 0.08

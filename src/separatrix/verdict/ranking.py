@@ -55,7 +55,7 @@ from separatrix.verdict.judgement import (
     whirls_too_often,
 )
 from separatrix.verdict.long_jobs import Load, Runner, scattered
-from separatrix.verdict.long_look import long_look, seen_for_longer
+from separatrix.verdict.long_look import is_left_alone, long_look, look_record, seen_for_longer
 from separatrix.verdict.ranking_records import (
     MeanFriction,
     NotFinished,
@@ -124,7 +124,7 @@ Piece = Asked | Knot | Limit | Longer | Case
 PieceOfPocket = TypeVar("PieceOfPocket", Knot, Limit)
 
 Findings = Mapping[Piece, Any]
-"""What was computed: a `Judgement`, a `CriticalFriction` of a knot, a `CageLimit` of a limit."""
+"""What was computed: a `Judgement`, also of a long look, a `CriticalFriction` of a knot, a `CageLimit`."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -196,6 +196,7 @@ def rank(study: Study, *, runner: Runner | None = None) -> Ranking:
     def ranking(found: Findings) -> Ranking:
         ranked = {name: _ranked(question, found, table, name) for name, table in frictions.items()}
         reference = question.cages[question.reference]
+        look = found.get(question.longer) if question.longer else None
         return Ranking(
             environment=environment,
             candidate=reference_candidate(study, asked).name,
@@ -215,7 +216,7 @@ def rank(study: Study, *, runner: Runner | None = None) -> Ranking:
             ball_model=reference.design.ball_model,
             motion_model=reference.design.motion_model,
             effects=tuple(_effects(question, found)),
-            long_look=found.get(question.longer) if question.longer else None,
+            long_look=look_record(look, question.longer.friction) if question.longer and look else None,
             capacity=transmitted_force(reference),
             notes=_notes(study, asked, question, found, ranked[environment]),
             complete={*pieces, *_between(question, found)} <= {*found},
@@ -300,7 +301,7 @@ def _between(question: _Question, found: Findings) -> list[Piece]:
 def _longer(question: _Question, found: Findings) -> list[Longer]:
     """Long looks at stable cages, where that at the least friction finds that the land takes it over."""
     first = found.get(question.longer) if question.longer else None
-    if first is None or first.is_clear:
+    if first is None or is_left_alone(first):
         return []
     stable = [key for key in question.keys if key in found and found[key].verdict is Verdict.STABLE]
     return [_own_look(question, key, found[key]) for key in stable]

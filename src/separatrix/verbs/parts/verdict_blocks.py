@@ -178,7 +178,7 @@ def deciding(answer: Part, rows: Sequence[Part]) -> Iterator[str]:
         words = f"With {wide.change} the critical friction of {answer.candidate} would be "
         words += fill(wide, "{own_critical_friction}")
         whirling = [row.name for row in known if row.verdict != "STABLE" and row.name not in driven]
-        above = [row.name for row in known if row.friction > critical and row.name not in whirling]
+        above = [row.name for row in known if row.friction > critical and row.verdict == "STABLE"]
         at_most, wide_at_most = (
             inf if (high := one.get("own_critical_friction_high")) is None else high for one in (own, wide)
         )
