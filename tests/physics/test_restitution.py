@@ -95,18 +95,15 @@ def test_a_hertzian_impact_equals_the_integrated_impact_in_newtons(damping, spee
     assert impact(MASS, K, damping, speed, 1.5)[0] == pytest.approx(eta, abs=1e-9)
 
 
-def test_a_weakly_damped_hertzian_impact_loses_what_perturbation_says():
-    """1 - eta = 1.25^0.6 B(1/2, 8/5) beta for small damping: 3.783 zeta, the linear spring pi zeta."""
+def test_the_limits_of_a_hertzian_impact():
+    """Weakly damped 1 - eta = 1.25^0.6 B(1/2, 8/5) beta: 3.783 zeta, the linear spring pi zeta."""
     zeta = 1e-6
     slope = 2.0 * 1.25**0.6 * beta(0.5, 1.6) / sqrt(0.8 * 1.25**0.2)
     assert slope == pytest.approx(3.783, abs=5e-4)
     # the next term is of order zeta
     assert (1.0 - hertzian_restitution_factor(zeta)) / zeta == pytest.approx(slope, rel=1e-5)
     assert hertzian_restitution_factor(0.0) == 1.0
-
-
-def test_a_strongly_damped_hertzian_impact_forgets_its_start():
-    """Eta goes as the group to the power -5, with a constant of the impact's last part; never quite 0."""
+    # strongly damped: as the group to the power -5, with a constant of the impact's last part; never quite 0
     group = 2.0 / sqrt(0.8 * 1.25**0.2)
     ends = [hertzian_restitution_factor(zeta) * (group * zeta) ** 5 for zeta in (2.3, 2.7, 3.0, 100.0)]
     assert ends == pytest.approx([0.67929306] * 4, abs=5e-9)  # digits of the docs

@@ -7,7 +7,7 @@ import itertools
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.special import expit, ndtri
@@ -16,6 +16,7 @@ from separatrix.cage.disturbance import settings_for
 from separatrix.cage.ensemble import Ensemble
 from separatrix.cage.moving_cage import moving_cage
 from separatrix.cage.outcome import Cause, RunOutcome
+from separatrix.cage.rows import LANES
 from separatrix.chain.solution import Solution, solve
 from separatrix.ground.errors import InputError, together
 from separatrix.ground.units import Array, Hertz, Metre, RadianPerSecond, Ratio, Watt, format_quantity
@@ -30,8 +31,9 @@ from separatrix.verdict.draws import (
     sobol_points,
     uncertain_inputs,
 )
-from separatrix.verdict.judgement import is_calm, is_taken_by_land, kick_counts
+from separatrix.verdict.judgement import Judgement, is_calm, is_taken_by_land, kick_counts
 from separatrix.verdict.long_jobs import Interrupted, Load, Runner
+from separatrix.verdict.long_look import is_left_alone, long_look
 from separatrix.verdict.parameter_axes import TIME_SHARE, varied
 from separatrix.verdict.stability_curve import expected_load
 from separatrix.verdict.swept_cases import time_shares
@@ -134,6 +136,11 @@ class Duty(NamedTuple):
 Place = tuple[int, int, int]
 """Phase, race friction and pocket clearance of a node; -1 for a new pocket on a wider land."""
 
+LOOK: Place = (-1, 0, 0)
+"""Of the long look at a new cage."""
+
+LEFT_OUT = " The life leaves out what the land does after [stability] duration: `rank` judges it."
+
 
 def life(
     study: Study,
@@ -185,7 +192,11 @@ def life(
     test = accelerated and _duty(varied(study, {SPEED: accelerated}), candidate, 1.0)
     duties = [*phases, test] if test else phases
 
-    def node(place: Place) -> Node:
+    def node(place: Place) -> Node | Judgement | None:
+        if place == LOOK:
+            new = phases[0].solution
+            friction = new.friction.mean if new.friction else 0.0
+            return long_look(new, friction, phases[0].settings, runner, LANES)
         at, i, j = duties[place[0]], *place[1:]
         if at is test:
             return _node(at.solution, at.settings, runner)
@@ -193,9 +204,10 @@ def life(
         values |= {"cage.land_clearance": lands[1]} if j < 0 else {}
         return _node(solve(varied(at.solution.study, values), candidate), at.settings, runner)
 
-    def answer(found: Mapping[Place, Node]) -> Life:
-        if len(found) < len(places):
+    def answer(every: Mapping[Place, Any]) -> Life:
+        if len(every) < len(places):
             raise Interrupted
+        look, found = every[LOOK], {place: one for place, one in every.items() if place != LOOK}
         notes = [*_notes(found, fixed, assumed), *_tests(rates, solution), *solution.notes]
         notes += [*_thin(worn), *([NO_WIDTH] if land and not lands[1:] else [])]
         each = [
@@ -210,16 +222,18 @@ def life(
         speed = sum(one.share * _turns(one.solution.study) for one in phases)
         made_of = candidate or (study.cage and study.cage.material)
         name = (made_of and made_of.name) or study.name
-        return _life(name, each, worn, inputs, speed, revolutions, tested, notes)
+        first = [] if look is None or is_left_alone(look) else [look.reason + LEFT_OUT]
+        lived = _life(name, each, worn, inputs, speed, revolutions, tested, notes)
+        return replace(lived, notes=(*first, *lived.notes))
 
-    places = list(itertools.product(range(len(phases)), range(FRICTIONS), range(len(clearances))))
+    places = [LOOK, *itertools.product(range(len(phases)), range(FRICTIONS), range(len(clearances)))]
     places += [(phase, LAND_AT, -1) for phase in range(len(phases)) if lands[1:]]
     places += [(len(phases), 0, 0)] if test else []
     return runner.work_out(
         node,
         places,
         into=answer,
-        load=lambda place: _load(duties[place[0]].settings),
+        load=lambda place: _load(duties[max(place[0], 0)].settings),
     )
 
 
