@@ -87,7 +87,7 @@ def test_harmonics_reproduce_the_orbital_speeds_of_a_combined_load(study, change
     assert state.orbital_waves.share == pytest.approx(share, abs=1e-9)  # rounding
 
 
-def test_free_balls_lead_by_the_integral_of_their_speed():
+def test_free_balls_lead_by_the_integral_of_their_speed_and_a_loaded_one_is_slower():
     """Omega times the slope of the lead over the azimuth is the speed beyond the mean; to its difference."""
     waves = (0.3, 0.1), (-0.1, 0.2)
     cage = replace(moving_cage(solve(STUDY), 0.0), orbital_cosines=waves[0], orbital_sines=waves[1])

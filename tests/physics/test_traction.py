@@ -94,7 +94,7 @@ def test_whole_curve_in_pure_creep():
     assert found.traction_coefficient / MU == pytest.approx(exact, abs=1e-4)  # interpolation; measured 4e-5
 
 
-def test_heathcote_alone_with_little_friction():
+def test_heathcote_alone_with_little_friction_and_full_slip_without_zero_creep():
     """Slip changes sign at y = 0.347296 a; the slope there is 3.798 mu/(q a^2)."""
     q, friction, zero = 1000.0, 1e-9, -1000.0 * (0.347296 * A) ** 2
     found = curve(curvature=q, friction=friction)

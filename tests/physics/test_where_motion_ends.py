@@ -136,11 +136,12 @@ def test_a_land_that_takes_over_a_calm_cage_keeps_it_from_stable():
     assert look.longest_run == pytest.approx(1.0, rel=0.01)  # to the end of a look, of 2 ms
     assert look.worst.whirls == look.worst.whirls_by_land > 8  # 12
     kept = look_record(look, 0.05)
-    assert (kept.duration, kept.count, kept.reason) == (look.longest_run, look.worst, look.reason)
+    assert (kept.duration, kept.count, kept.takes_over) == (look.longest_run, look.worst, True)
     assert 0.5 < look.largest_land_force < 5.0  # N, 1.6; the weight is 0.3 mN
     assert (open_end := seen_for_longer(judged, look, None)).verdict is Verdict.UNDECIDED
     assert f"{look.worst.whirls} of 16 runs end whirling round the land" in open_end.reason
-    longer = seen_for_longer(judged, look, look)
+    longer = seen_for_longer(replace(judged, force_exceeds_races=True, largest_offset=1.0), look, look)
+    assert (open_end.driven_by_land, longer.force_exceeds_races, longer.largest_offset) == (True, True, 1.0)
     assert (longer.verdict, longer.is_by_land, longer.worst) == (Verdict.UNSTABLE, True, look.worst)
     assert longer.probability_stable == look.worst.probability_stable < 0.5
     # with the evidence of these runs, and the duration that was asked for

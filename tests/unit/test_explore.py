@@ -194,7 +194,7 @@ def row(document, name):
     return next(row for row in document["materials"] if row["name"] == name)
 
 
-def test_each_friction_has_the_scatter_that_is_known_of_it(small, capsys):
+def test_each_friction_has_its_scatter_with_any_number_of_threads(small, capsys):
     """A measured one that of a new cage, a stated one its own; what was not measured is null, with why."""
     missing = row(small, "C")
     assert missing["reason"] == "not measured in air"

@@ -96,7 +96,7 @@ def test_a_start_loads_what_it_needs(program):
     assert done.stderr.strip() == ""
 
 
-def test_every_public_name_can_be_imported():
+def test_every_public_name_can_be_imported_and_no_file_name_stands_twice():
     """Each name in `separatrix.__all__` is there, and an unknown one is refused as Python does."""
     for name in separatrix.__all__:
         assert getattr(separatrix, name) is not None

@@ -20,7 +20,7 @@ from separatrix.study.film import library_rate
 from separatrix.study.library import Datum, Library, choose, contradictions, with_files
 from separatrix.study.reading import study_again
 from separatrix.study.study import WearRates, shipped_studies
-from separatrix.verdict.life_table import wear_rates
+from separatrix.verdict.wear_life import wear_rates
 
 DATA = files("separatrix.study.library") / "data"
 LIBRARY = Library()

@@ -23,7 +23,7 @@ from separatrix.verbs.compare import RESULTS, difference_interval, differing, re
 from separatrix.verbs.compare import compared as compared_answers
 from separatrix.verbs.map import map_figure, nearest_words, unchanged, undecided
 from separatrix.verbs.parts.answer_page import entry_words
-from separatrix.verbs.parts.chain_blocks import CAGE, bearing_picture, section_of
+from separatrix.verbs.parts.chain_blocks import CAGE_COLOUR, bearing_picture, section_of
 from separatrix.verbs.parts.verdict_blocks import (
     deciding,
     evidence_column,
@@ -287,7 +287,7 @@ def test_the_section_keeps_what_the_study_states(restitution):
     picture = bearing_picture(restitution, restitution)
     assert "contact angle 30.9 deg inner, 25.31 deg outer" in picture.caption
     (panel,) = picture.figure().panels
-    assert {one.line for one in panel.marks if one.face == CAGE} == {"--"}
+    assert {one.line for one in panel.marks if one.face == CAGE_COLOUR} == {"--"}
 
 
 # --- curves, maps, sweeps ------------------------------------------------------------------------
@@ -383,7 +383,7 @@ def test_the_headline_says_whether_uneven_orbits_decide(friction, count):
 def test_the_headline_names_a_land_that_drives_the_cage():
     """Not that the pockets decide, that a land so tight is not enough, or that it keeps the cage stable."""
     row = Part(candidate("UNSTABLE").values | {"driven_by_land": True, "safety_factor_low": None}, {})
-    rest = {"cage": {"land_friction": 0.157}, "duration": 0.3, "chain": {}}
+    rest = {"cage": {"land_friction": 0.157}}
     said = "Phenolic: friction on the land, 0.157, and not in the pockets, drives the whirl."
     assert [*deciding(Part(NO_EFFECT.values | rest, {}), [row])] == [said]
     wide = {"name": "wide_land", "change": "a wide land", CRITICAL: 0.01, f"{CRITICAL}_low": 0.01}
@@ -492,10 +492,9 @@ def test_the_paper_differs_by_the_motion_too(motion, ball):
     assert ("a ball that may spin in an impact resists it with" in told) is (ball == "auto")
     assert ("the cage also tilts" in told) is (motion == "space")
     row = Part(row.values | {"verdict": "UNSTABLE", "driven_by_land": True, "paper_verdict": "STABLE"}, {})
-    told = by_paper(Part(answer.values | {"duration": 0.3}, {}), [row], ["Phenolic"])[0].text
-    assert told.endswith(
-        "which friction on the land drives: its own runs are in the plane and end after 0.3."
-    )
+    look = {"long_look": {"takes_over": True, "duration": 3.0}}
+    told = by_paper(Part(answer.values | look, {}), [row], ["Phenolic"])[0].text
+    assert told.endswith("drives the cage. Runs of 3 show it; those of the paper are shorter.")
 
 
 def test_a_map_says_what_is_next_to_the_study_where_it_changes_and_what_each_point_has():

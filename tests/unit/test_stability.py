@@ -203,7 +203,7 @@ def test_runs_are_numbered_one_after_the_other_and_few_are_wasted_far_from_the_c
     assert isinstance(Response(first, 64).crossing(0.5, 96, 0.1), Crossing)
 
 
-def test_unresolved_runs_are_told(monkeypatch):
+def test_unresolved_runs_and_those_of_the_land_are_told(monkeypatch):
     """They count as not whirling, and a note says how many, but for those whose motion falls."""
     cage = CAGE
     found = run_ensemble(cage, StabilitySettings(duration=1e-3), kicks=(0.5,), runs=5)
@@ -219,7 +219,7 @@ def test_unresolved_runs_are_told(monkeypatch):
     found.outcome[0], found.cause[0] = RunOutcome.WHIRLS, Cause.LAND_FRICTION
     count = counts.add(cell_of(0.2), 5)
     assert count.whirling == 0
-    assert "land drives 5 of 5 runs from 0.5 m/s at friction 0.196 round it" in count.notes[0]
+    assert "land drives 5 of 5 runs from 0.5 m/s at friction 0.196. It leaves these out" in count.notes[0]
 
 
 @pytest.mark.parametrize("ball", [BallModel.TRACTION, BallModel.FREE])

@@ -251,7 +251,7 @@ def _places_of_pockets(
 
 
 def _angles(cage: MovingCage, along: Array, across: Array, places: Array) -> Array:
-    """Where on each ball its pocket touches, shape (time, ball) [rad]: see `pocket_force`."""
+    """Where on each ball its pocket touches, shape (time, ball) [rad]: see `contact_force.pocket_depth`."""
     beside, apart = pocket_rectangle(cage)[1], places[0, :, of(rows.APART)]
     t, z = along - np.clip(along, -apart, apart), across - np.clip(across, -beside, beside)
     return np.asarray(np.arctan2(0.0 - z, -t))

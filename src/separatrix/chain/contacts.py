@@ -1,7 +1,7 @@
 """First links of the chain: the bearing's equilibrium, the contacts of its most loaded ball, their traction.
 
-Each is dear to solve, and is remembered by the value of the records that it depends on. Where the contacts
-leave what races bear and what the model holds, sentences say so.
+Each, and each pair, is dear to solve, and is remembered by the value of the records that it depends on. Where
+the contacts leave what races bear and what the model holds, sentences say so.
 
 Two equal bearings may press each other by a preload (docs/theory/equilibrium.md): the external load of the
 shaft presses the bearing of the study and relieves the other one. Rigid rings keep their distance, so that
@@ -17,7 +17,6 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from dataclasses import dataclass, fields, replace
 from functools import lru_cache
-from math import sqrt
 from typing import NamedTuple, TypeVar
 
 import numpy as np
@@ -155,7 +154,7 @@ def _root(excess: Callable[[Newton], float], least: Newton) -> Newton:
         except InputError:
             if stride < LEAST_STRIDE:
                 raise
-            stride = sqrt(stride)
+            stride = math.sqrt(stride)
             continue
         if is_above:
             return float(brentq(excess, low, stride * low, xtol=1e-3 * least, rtol=1e-12))

@@ -35,12 +35,14 @@ from separatrix.chain.hertz import track_area
 from separatrix.ground.errors import InputError
 from separatrix.ground.units import (
     Kelvin,
+    Kilogram,
     KilogramPerMetre3,
     KilogramPerSecond,
     Metre,
     MetrePerSecond,
     Newton,
     NewtonMetre,
+    NewtonSecondPerMetre,
     PascalSecond,
     RadianPerSecond,
     Ratio,
@@ -52,11 +54,6 @@ from separatrix.study.study import CageDesign, Cooling, Guidance, Study
 
 if TYPE_CHECKING:
     from separatrix.chain.contacts import BearingState, RaceContact
-from separatrix.ground.units import (
-    Kilogram,
-    NewtonSecondPerMetre,
-)
-
 HIRS: tuple[Ratio, Ratio] = (0.066, -0.25)
 """Factor and power of Hirs's friction between smooth walls, Reynolds number of the gap."""
 

@@ -1,6 +1,7 @@
 """Where running-in ends, and the mean of the steady stretch behind it with its standard error.
 
-Values are means over whole cycles, or over equal spans made of them.
+Values are means over equal spans of the stretch in which the contact slid under its load, of whole cycles
+where these are known.
 
 No shape of running-in is assumed: the steady part is the longest tail of a test whose mean agrees with that
 of each later part of it. Let the tail begin at some span. Its mean is compared with the means of all shorter
@@ -42,7 +43,7 @@ from separatrix.ground.errors import InputError
 from separatrix.ground.units import Array, Ratio, format_number
 
 MOST = 256  # spans into which a test is divided for its statistics, at most
-FEWEST = 12  # spans, where no cycle is known and there are as many rows
+FEWEST_OF_ROWS = 12  # spans, where no cycle is known and there are as many rows
 FEWEST_ROWS = 4  # rows without which there are no statistics
 FEWEST_CYCLES = 4  # whole cycles below which means are over rows instead, which is reported
 ROWS_OF_A_SPAN = 3  # rows in a span, at least, where no cycle is known
@@ -87,21 +88,23 @@ class Stretch:
 
         As many spans as the rows fill, up to `MOST`; of few rows, one each. Where cycles are known, the last
         span ends where they do; those that fill no span of their own are left out at the start, where a test
-        is least steady. Fewer than `FEWEST` cycles are divided evenly: together they stay whole.
+        is least steady. Fewer than `FEWEST_OF_ROWS` cycles are divided evenly: together they stay whole.
         """
         if self.done is None:
             begin, end = float(self.along[0]) if start is None else start, float(self.along[-1])
             low, high = np.searchsorted(self.along, begin), np.searchsorted(self.along, end, side="right")
             rows = int(high - low)
-            count = min(MOST, max(rows // ROWS_OF_A_SPAN, min(rows, FEWEST)))
+            count = min(MOST, max(rows // ROWS_OF_A_SPAN, min(rows, FEWEST_OF_ROWS)))
             if count < FEWEST_ROWS:
                 rule = f"needs at least {FEWEST_ROWS} rows of steady friction"
                 raise InputError(self.source, rule, str(rows), "Take a longer log, or an earlier run_in_end.")
             return means(self.along, self.friction, begin, end, count)
         first, last = self.cycles(start)
         count = last - first
-        if count < FEWEST:
-            return means(self.done, self.friction, float(first), float(last), count * -(-FEWEST // count))
+        if count < FEWEST_OF_ROWS:
+            return means(
+                self.done, self.friction, float(first), float(last), count * -(-FEWEST_OF_ROWS // count)
+            )
         size = -(-count // MOST)
         begin = float(last - count // size * size)
         return means(self.done, self.friction, begin, float(last), count // size)
@@ -337,7 +340,7 @@ DRIFT = 0.01  # probability without a drift below which a tail still drifts
 EVEN = 3.0
 """Ratio of the power at the lowest cosines to that at the next from which friction wanders or bends."""
 
-FEWEST_SPANS = 12  # below which running-in is not searched
+FEWEST_TO_SEARCH = 12  # below which running-in is not searched
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -354,7 +357,7 @@ class RunIn:
 def run_in(values: Array) -> RunIn:
     """Return where running-in ends, from means over equal spans, shape (span,)."""
     n = values.size
-    if n < FEWEST_SPANS or np.ptp(values) <= ROUNDING * np.abs(values).max():
+    if n < FEWEST_TO_SEARCH or np.ptp(values) <= ROUNDING * np.abs(values).max():
         return RunIn(end=0.0, rest=0.0, ends=True)
     # spikes of one or two spans are replaced by the median of their neighbours
     middle = median_filter(values, 5, mode="nearest")

@@ -47,16 +47,16 @@ SECTION = ((0.2, 1.1), (0.7, 2.2))
 def cautions(study: Study) -> Iterator[str]:
     """Sentences to warn with."""
     cage, operation = study.cage, study.operation
-    yield from _materials(study)
+    yield from _material_cautions(study)
     if study.fluid is not None and operation.temperature is not None:
         for sentence in contradictions(study.fluid, operation.temperature):
             yield f"[operation] fluid {sentence}"
     if cage is not None:
-        yield from _cage(study, cage)
+        yield from _cage_cautions(study, cage)
     yield from beyond_bearings(study)
 
 
-def _materials(study: Study) -> Iterator[str]:
+def _material_cautions(study: Study) -> Iterator[str]:
     """One sentence on materials whose sources state another temperature, or none."""
     acting = [study.bearing.ball_material, study.bearing.ring_material, study.film.body]
     if study.cage is not None and study.cage.ball_cage_stiffness is None:
@@ -80,7 +80,7 @@ def _materials(study: Study) -> Iterator[str]:
         yield f"Data of the library: {'; '.join(said)}. Consider your own."
 
 
-def _cage(study: Study, cage: CageDesign) -> Iterator[str]:
+def _cage_cautions(study: Study, cage: CageDesign) -> Iterator[str]:
     """Sentences on numbers of the land that the study does not state, and on a pocket that leans."""
     assumed = {
         "land_stiffness": format_quantity(cage.land_stiffness, "N/m"),

@@ -1,8 +1,8 @@
 """What is asked: one bearing, its operating point, film, cage and candidate cage materials. SI inside.
 
 Every record is frozen and checks itself when built; what computes with it trusts it. A number may be given
-as text with its unit, ``CageDesign(mass="25 g", ...)``: the record holds it in SI. Its smaller sections are
-here: the bearing by its designation, and the fluid that cools.
+as text with its unit, ``CageDesign(mass="25 g", ...)``: the record holds it in SI. The bearing by its
+designation and the fluid that cools are here, too; the other sections have a file each.
 """
 
 from __future__ import annotations
@@ -88,10 +88,10 @@ def read_bearing(raw: Any, path: KeyPath, reading: Reading) -> BallBearing:
     except InputError as error:
         reading.refuse((*path, "designation"), error)
         raise Refused from None
-    record = helper.library.record("bearing", name)
+    found = helper.library.record("bearing", name)
     given = {*raw, *(PLAY if PLAY & set(raw) else ())}
-    filled = {key: record.data[key][0] for key in GEOMETRY if key in record.data and key not in given}
-    values = {key: _raw(key, datum.value) for key, datum in filled.items()}
+    filled = {entry: found.data[entry][0] for entry in GEOMETRY if entry in found.data and entry not in given}
+    values = {entry: _raw(entry, datum.value) for entry, datum in filled.items()}
     bearing = reading.record(BallBearing, {**raw, "designation": name, **values}, path)
     if not filled:
         reading.notes.append(
@@ -100,23 +100,21 @@ def read_bearing(raw: Any, path: KeyPath, reading: Reading) -> BallBearing:
     guesses: dict[str, str] = {}
     for entry, datum in filled.items():
         value = f"{entry} {format_quantity(datum.value, UNITS[entry])}"
-        reading.places[(*path, entry)] = (
-            f"{record.place}: {name}, {value}; {datum.confidence}: {datum.source}"
-        )
+        reading.places[(*path, entry)] = f"{found.place}: {name}, {value}; {datum.confidence}: {datum.source}"
         if datum.confidence.startswith("guess"):
             guesses[value] = datum.source
     if guesses:
         be = "are guesses" if len(guesses) > 1 else "is a guess"
         known = "; ".join(dict.fromkeys(guesses.values()))
         reading.notes.append(f"[bearing] {', '.join(guesses)} of {name} {be} of the library: {known}.")
-    return replace(bearing, record=record.plain())
+    return replace(bearing, record=found.plain())
 
 
-def _raw(key: str, value: float) -> object:
+def _raw(entry: str, value: float) -> object:
     """A value of the library as a study file has it."""
-    if UNITS[key] != "-":
-        return f"{value!r} {UNITS[key]}"
-    return int(value) if key == "ball_count" else value
+    if UNITS[entry] != "-":
+        return f"{value!r} {UNITS[entry]}"
+    return int(value) if entry == "ball_count" else value
 
 
 _CONDUCTANCE = positive(1e-9, 1e9)

@@ -76,7 +76,7 @@ def page(answer: Part) -> Page:
         *by_paper(answer, known, apart),
         *over_inputs(answer, rows),
         *pictures(answer, own),
-        *[Heading(evidence_head(answer, known))] * bool(known),
+        *[Heading(evidence_head(answer))] * bool(known),
         Table(f"{own.name}, evidence", evidence(known), tuple(known)),
         Note(EVIDENCE, "legend", LONG),
         *reasons(rows),
@@ -138,12 +138,14 @@ def by_paper(answer: Part, known: Sequence[Part], apart: Sequence[str]) -> list[
     ball = f"{ball}friction of its races" * (answer.ball_model != "damper")
     tilts = "the cage also tilts and moves along the axis" * (answer.cage.motion == "space")
     full = ", and ".join(filter(None, (tilts, ball)))
-    driven = [row.name for row in rows if row.name in apart and of.is_by_land(row)]
+    driven = [row.name for row in rows if row.name in apart and of.is_land_driven(row)]
     others = [name for name in apart if name not in driven]
     why = ""
     if driven:
-        land = "which friction on the land drives: its own runs are in the plane and end after {duration}."
-        why = q.fill(answer, f" It differs for {', '.join(driven)}, {land}")
+        why = f" It differs for {', '.join(driven)}: friction on the land drives the cage."
+        look = answer.get("long_look")
+        if look and look.takes_over:
+            why += q.fill(look, " Runs of {duration} show it; those of the paper are shorter.")
     if others:
         why += q.fill(answer.chain, f" It differs for {', '.join(others)}: in the full model {full}.")
     each = by_verdict((row.paper_verdict, row.name) for row in rows)
@@ -155,10 +157,10 @@ def by_paper(answer: Part, known: Sequence[Part], apart: Sequence[str]) -> list[
     ]
 
 
-def evidence_head(answer: Part, rows: Sequence[Part]) -> str:
+def evidence_head(answer: Part) -> str:
     """Return how many runs are behind the verdicts, from where, how long; longer after a long look."""
     kicks, look = of.disturbances(answer), answer.get("long_look")
-    if look and any(row.longest_run >= look.duration for row in rows):
+    if look and look.takes_over:
         longer = q.show(look.count, "kick")
         kicks = [f"{one} ({q.show(look, 'duration')})" if one == longer else one for one in kicks]
     return q.fill(answer, f"Evidence: {answer.runs} runs of {{duration}} from each of {', '.join(kicks)}")

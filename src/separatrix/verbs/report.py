@@ -39,16 +39,14 @@ FACTORS = {
 }
 """Factors of a program's development, as the standard names them."""
 
-CAPTION = (
+CREDIBILITY_CAPTION = (
     "Levels 0 to 4 of NASA-STD-7009B that the developers claim, assessed by nobody else; 0 is "
     "insufficient evidence. What each rests on, and what is missing: the documentation, page Credibility."
 )
 
-Json = Mapping[str, Any]
-
 
 @cache
-def claims() -> tuple[Json, ...]:
+def claims() -> tuple[Document, ...]:
     """Return the claims of each part of the program: by factor its level, evidence, and what is missing."""
     found = tomllib.loads((files(__package__) / "parts" / "credibility.toml").read_text(encoding="utf-8"))
     return tuple(found["whole"] | part for part in found["part"])
@@ -65,7 +63,7 @@ def credibility(documents: Mapping[str, Document]) -> list[Block]:
     outside = f"{len(notes) or 'no'} notes on what is outside its range"
     return [
         Heading("Credibility", Level.REPORT),
-        Table("credibility", columns, claims(), CAPTION, Level.REPORT),
+        Table("credibility", columns, claims(), CREDIBILITY_CAPTION, Level.REPORT),
         facts(
             ("Input pedigree", _pedigree(study)),
             ("Use assessment", outside + _extrapolated(documents.get("rank", {}))),
@@ -77,11 +75,11 @@ def credibility(documents: Mapping[str, Document]) -> list[Block]:
     ]
 
 
-def _level(factor: str, row: Json) -> int:
+def _level(factor: str, row: Document) -> int:
     return int(row[factor]["level"])
 
 
-def _pedigree(study: Json) -> str:
+def _pedigree(study: Document) -> str:
     """How many inputs are stated or assumed, and how sure the numbers of materials and frictions are."""
     from separatrix.study.sources import inputs_of
 
@@ -103,7 +101,7 @@ def _confidences(part: Any) -> Iterator[str]:
         yield from _confidences(one)
 
 
-def _extrapolated(ranked: Json) -> str:
+def _extrapolated(ranked: Document) -> str:
     """In how many rows of a ranking the friction is extrapolated."""
     places = (one for one in ranked.get("environments", ()) if one["name"] == ranked["environment"])
     found = [row["extrapolation"] for one in places for row in one["materials"] if "extrapolation" in row]

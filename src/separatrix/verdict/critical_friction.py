@@ -45,8 +45,8 @@ UNRESOLVED = (
     "Curve: {} of {} runs from {:g} m/s at friction {:.3g} are unresolved; they count as not whirling."
 )
 BY_LAND = (
-    "Curve: friction on the land drives {} of {} runs from {:g} m/s at friction {:.3g} round it; they count "
-    "as not whirling here, as friction in the pockets slows them, and as whirling in a verdict."
+    "Critical friction: friction on the land drives {} of {} runs from {:g} m/s at friction {:.3g}. It "
+    "leaves these out, as friction in the pockets slows them; a verdict counts them."
 )
 
 ALIKE: Ratio = 0.08

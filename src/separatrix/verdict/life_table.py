@@ -18,10 +18,10 @@ from separatrix.cage.moving_cage import moving_cage
 from separatrix.cage.outcome import Cause, RunOutcome
 from separatrix.cage.rows import LANES
 from separatrix.chain.solution import Solution, solve
-from separatrix.ground.errors import InputError, together
+from separatrix.ground.errors import InputError
 from separatrix.ground.units import Array, Hertz, Metre, RadianPerSecond, Ratio, Watt, format_quantity
 from separatrix.study.candidates import reference_candidate
-from separatrix.study.film import WearRate, library_rate
+from separatrix.study.film import WearRate
 from separatrix.study.study import BallModel, Candidate, Race, StabilitySettings, Study, WearRates
 from separatrix.verdict.critical_friction import SEARCHED_FRICTION, cage_limit
 from separatrix.verdict.draws import (
@@ -33,12 +33,13 @@ from separatrix.verdict.draws import (
 )
 from separatrix.verdict.judgement import Judgement, is_calm, is_taken_by_land, kick_counts
 from separatrix.verdict.long_jobs import Interrupted, Load, Runner
-from separatrix.verdict.long_look import is_left_alone, long_look
+from separatrix.verdict.long_look import has_land_friction, is_left_alone, long_look
 from separatrix.verdict.parameter_axes import TIME_SHARE, varied
 from separatrix.verdict.stability_curve import expected_load
 from separatrix.verdict.swept_cases import time_shares
 from separatrix.verdict.wear_life import (
     LEAST,
+    TEST,
     THICKEST,
     AcceleratedTest,
     BearingWear,
@@ -55,6 +56,7 @@ from separatrix.verdict.wear_life import (
     lives,
     steady_coverage,
     track_work,
+    wear_rates,
     work_done,
 )
 
@@ -69,7 +71,8 @@ LAND_AT = 1
 
 NO_WIDTH = "The wear of the land is not followed: [cage] land_width is not given."
 NO_EXPONENT = (
-    "The land opens, but its critical friction is beyond what was searched: it stays that of a new land."
+    "The land opens, but its critical friction is beyond what was searched, or the land drives the cage: it "
+    "stays that of a new land."
 )
 
 LEAST_CRITICAL: Ratio = 1e-3
@@ -77,7 +80,7 @@ LEAST_CRITICAL: Ratio = 1e-3
 
 FREELY = (
     "At places of the table the cage whirls without friction in its pockets, or friction on the land drives "
-    "it: there it counts as unstable with any, although friction in the pockets may calm it."
+    "it: the table counts it there as unstable at every friction, although more may calm it."
 )
 
 NARROWER = (1.0, 0.5, 0.2, 0.05)
@@ -100,7 +103,6 @@ DECADE: Ratio = 10.0
 """Factor either way, 95 %, by which a wear coefficient scatters that is stated without a range: bearings
 agree with tests to a factor of ten (ESTL, 44th AMS 2018, pp. 518-524)."""
 
-RATES = ("wear.film_wear", "wear.cage_wear")
 SPEED = "operation.inner_speed"
 PHASE_KEYS = (SPEED, "operation.outer_speed", "operation.axial_load", "operation.radial_load")
 """What the phases of a duty cycle may differ in."""
@@ -108,11 +110,6 @@ PHASE_KEYS = (SPEED, "operation.outer_speed", "operation.axial_load", "operation
 MOST_PHASES = 12
 STREAM = 0x11FE
 """Separates the draws of a life from others with a study's seed."""
-
-TEST = (
-    "Measure the wear of film and cage at the pressure and speed of the bearing and in its medium: worn "
-    "volume over load and sliding distance. Then state film_wear, cage_wear and bare_friction."
-)
 
 
 class Node(NamedTuple):
@@ -136,10 +133,10 @@ class Duty(NamedTuple):
 Place = tuple[int, int, int]
 """Phase, race friction and pocket clearance of a node; -1 for a new pocket on a wider land."""
 
-LOOK: Place = (-1, 0, 0)
-"""Of the long look at a new cage."""
+LONG_LOOK: Place = (-1, 0, 0)
+"""Of the long look at a new cage, in its fastest phase."""
 
-LEFT_OUT = " The life leaves out what the land does after [stability] duration: `rank` judges it."
+LEFT_OUT = " The life does not include that: its runs are shorter."
 
 
 def life(
@@ -193,11 +190,10 @@ def life(
     duties = [*phases, test] if test else phases
 
     def node(place: Place) -> Node | Judgement | None:
-        if place == LOOK:
-            new = phases[0].solution
-            friction = new.friction.mean if new.friction else 0.0
-            return long_look(new, friction, phases[0].settings, runner, LANES)
-        at, i, j = duties[place[0]], *place[1:]
+        if place == LONG_LOOK:
+            return long_look(fastest.solution, pocket_friction, fastest.settings, runner, LANES)
+        phase, i, j = place
+        at = duties[phase]
         if at is test:
             return _node(at.solution, at.settings, runner)
         values = {"film.race_friction": float(frictions[i]), "cage.pocket_clearance": clearances[max(j, 0)]}
@@ -207,7 +203,7 @@ def life(
     def answer(every: Mapping[Place, Any]) -> Life:
         if len(every) < len(places):
             raise Interrupted
-        look, found = every[LOOK], {place: one for place, one in every.items() if place != LOOK}
+        look, found = every.get(LONG_LOOK), {at: one for at, one in every.items() if at != LONG_LOOK}
         notes = [*_notes(found, fixed, assumed), *_tests(rates, solution), *solution.notes]
         notes += [*_thin(worn), *([NO_WIDTH] if land and not lands[1:] else [])]
         each = [
@@ -222,46 +218,24 @@ def life(
         speed = sum(one.share * _turns(one.solution.study) for one in phases)
         made_of = candidate or (study.cage and study.cage.material)
         name = (made_of and made_of.name) or study.name
-        first = [] if look is None or is_left_alone(look) else [look.reason + LEFT_OUT]
         lived = _life(name, each, worn, inputs, speed, revolutions, tested, notes)
-        return replace(lived, notes=(*first, *lived.notes))
+        if look is None or is_left_alone(look) or FREELY in notes:
+            return lived
+        return replace(lived, notes=(look.reason + LEFT_OUT, *lived.notes))
 
-    places = [LOOK, *itertools.product(range(len(phases)), range(FRICTIONS), range(len(clearances)))]
+    fastest = max(phases, key=lambda one: abs(one.solution.bearing.cage_speed))
+    pocket_friction = fastest.solution.friction.mean if fastest.solution.friction else 0.0
+    asks_look = not solution.design.is_of_paper and has_land_friction(moving_cage(solution, 0.0))
+    places = [LONG_LOOK] if asks_look else []
+    places += itertools.product(range(len(phases)), range(FRICTIONS), range(len(clearances)))
     places += [(phase, LAND_AT, -1) for phase in range(len(phases)) if lands[1:]]
     places += [(len(phases), 0, 0)] if test else []
     return runner.work_out(
         node,
         places,
         into=answer,
-        load=lambda place: _load(duties[max(place[0], 0)].settings),
+        load=lambda at: Load(LANES, dear=20.0) if at == LONG_LOOK else _load(duties[at[0]].settings),
     )
-
-
-def wear_rates(study: Study, wear: WearRates, candidate: Candidate | None) -> dict[str, WearRate]:
-    """Wear coefficients of film and cage by their keys: those of the study, else of the library.
-
-    Raises
-    ------
-    InputError
-        Neither has one, or the races are bare.
-    """
-    if study.film.thickness is None:
-        raise InputError("[film] thickness", "is missing: bare races have no film that wears")
-    own = (candidate and candidate.material) or (study.cage and study.cage.material) or None
-    cage = candidate.name if candidate else "the cage"
-    asked = (wear.film_wear, study.film.material, "the film"), (wear.cage_wear, own, cage)
-    found, problems = dict[str, WearRate](), list[InputError]()
-    for key, (given, material, what) in zip(RATES, asked, strict=True):
-        rate = library_rate(material) if given is None else WearRate(given)
-        if rate is None:
-            name = material.name if material is not None and material.record else what
-            rule = f"is missing, and the library has no wear coefficient of {name}"
-            problems.append(InputError(f"[wear] {key.removeprefix('wear.')}", rule, cure=TEST))
-        else:
-            found[key] = rate
-    if problems:
-        raise together(problems)
-    return found
 
 
 def _thin(worn: Worn) -> Iterator[str]:
@@ -356,7 +330,7 @@ def _accelerated(solution: Solution, node: Node, phases: Sequence[Phase], worn: 
     chance = expit(node.steepness * np.log(np.maximum(worn.pocket_friction, LEAST) / node.critical))
     return AcceleratedTest(
         inner_speed=solution.study.operation.inner_speed,
-        critical_friction=node.critical,
+        critical_friction=node.critical if node.critical > LEAST_CRITICAL else 0.0,
         probability_stable=float(1.0 - chance.mean()),
         film_time=float(1.0 / max(films)),
         pocket_time=float(node.pockets[0] / calm),
@@ -378,7 +352,7 @@ def _clearances(study: Study, key: str, new: Metre) -> list[Metre]:
 def _node(solution: Solution, settings: StabilitySettings, runner: Runner) -> Node:
     """Critical friction at a place, and the work of the pockets below and above it.
 
-    Where friction on the land drives it below, it is that of a cage that whirls with any.
+    Where friction on the land drives it below, or at its own friction, it is that of one that always whirls.
     """
     limit = cage_limit(solution, settings, runner)
     at = limit.own_critical_friction
@@ -393,6 +367,9 @@ def _node(solution: Solution, settings: StabilitySettings, runner: Runner) -> No
     calm, whirl = _mean(below, whirls=False), _mean(above, whirls=True)
     whirl = whirl if whirl[0] else calm
     pockets, lands = (calm[0], whirl[0]), (calm[1], whirl[1])
+    own = solution.friction.mean if solution.friction else math.inf
+    if own < CALM * critical and has_land_friction(moving_cage(solution, 0.0)):
+        below = followed(own)
     is_taken = is_taken_by_land(kick_counts(below)[0])
     steepness = limit.steepness or STEEP
     return Node(LEAST_CRITICAL if is_taken else critical, steepness, pockets, lands, limit.notes)
@@ -424,7 +401,7 @@ def _table(
     pockets, on_land = each("pockets"), each("lands")
     exponent, widening = 0.0, 1.0
     wider, new = found.get((phase, LAND_AT, -1)), found[phase, LAND_AT, 0]
-    if wider and wider.critical < SEARCHED_FRICTION and new.critical < SEARCHED_FRICTION:
+    if wider and all(LEAST_CRITICAL < one.critical < SEARCHED_FRICTION for one in (wider, new)):
         widening = float(lands[1] / lands[0])
         exponent = math.log(wider.critical / new.critical) / math.log(widening)
     return LifeTable(

@@ -1,4 +1,4 @@
-"""The one runner of long jobs: threads or a cluster, progress, interrupts, kept runs, time left."""
+"""The one runner of long jobs: threads or a cluster, progress, interrupts, kept runs, expected time."""
 
 from __future__ import annotations
 
@@ -527,7 +527,7 @@ def program() -> bytes:
     return hashlib.sha256(b"".join(path.read_bytes() for path in sources)).digest()
 
 
-PACE, UNEVEN = 1e8, 0.22
+PACE, UNEVEN_SHARE = 1e8, 0.22
 """Steps of a ball that one core computes in a second, and the part of them that it does among uneven orbits,
 where a verdict also asks for two frictions.
 
@@ -564,5 +564,5 @@ def time_of_runs(solution: Solution, runs: float) -> Second:
     settings = settings_for(solution.study.stability, cage)
     kind, *_, limits = numbers_of(cage, settings.middle_kick, settings.duration)
     share = 0.06 / (1.2 - solution.restitution.restitution_factor)
-    pace = PACE * (UNEVEN if kind.harmonics else 1.0)
+    pace = PACE * (UNEVEN_SHARE if kind.harmonics else 1.0)
     return float(runs * share * limits[MOST] * kind.steps * kind.balls / pace)

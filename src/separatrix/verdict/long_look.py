@@ -5,10 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from separatrix.cage.ensemble import Runs
-from separatrix.cage.moving_cage import moving_cage
+from separatrix.cage.moving_cage import MovingCage, moving_cage
 from separatrix.chain.solution import Solution
 from separatrix.ground.units import Newton, Ratio, Second
 from separatrix.study.study import BallModel, StabilitySettings
@@ -29,7 +27,10 @@ LONGER, LONGEST = 10.0, 3.0
 """Time for which it is followed, all of it: so many times [stability] duration, but no more than this [s],
 unless `duration` itself is longer."""
 
-LARGEST = ("largest_offset", "largest_contact_force", "largest_land_force", "longest_run")
+LARGEST = (
+    *("largest_offset", "largest_contact_force", "largest_land_force", "largest_tilt", "axial_travel"),
+    *("force_exceeds_races", "left_pocket", "energy_imbalance", "longest_run"),
+)
 """Evidence of any run, and so of the long ones, too."""
 
 
@@ -41,6 +42,7 @@ class LongLook:
     duration: Second  # for which they were followed, all of it
     count: KickCount  # where they end
     largest_land_force: Newton  # any run
+    takes_over: bool  # whether the land takes over more runs than a stable cage may have
     reason: str  # the same in a sentence
 
 
@@ -56,10 +58,10 @@ def long_look(
 
     It is that of the settings nearest to their reference. What drives a cage round its land is friction
     there, while its pockets take energy: so the candidate of least friction shows whether the others need a
-    look of their own. The reason says how many the land takes over.
+    look of their own. The reason says how many runs end whirling round the land.
     """
     cage = moving_cage(solution, friction, ball)
-    if np.isinf(cage.land_gap) or cage.land_friction == 0.0:
+    if not has_land_friction(cage):
         return None
     time = max(settings.duration, min(LONGER * settings.duration, LONGEST))
     for_long = replace(settings, duration=time)
@@ -67,6 +69,11 @@ def long_look(
     found = runner.ensemble_of([Runs(cage, for_long, 0, runs, whole=True)], (kick,))
     judged = judge(cage, found, capacity=transmitted_force(solution))
     return replace(judged, reason=reasons.taken_by_land(cage, found))
+
+
+def has_land_friction(cage: MovingCage) -> bool:
+    """Whether there is a land whose friction could drive the cage."""
+    return cage.land_gap < math.inf and cage.land_friction > 0.0
 
 
 def is_left_alone(look: Judgement) -> bool:
@@ -81,6 +88,7 @@ def look_record(look: Judgement, friction: Ratio) -> LongLook:
         duration=look.longest_run,
         count=look.worst,
         largest_land_force=look.largest_land_force,
+        takes_over=not is_left_alone(look),
         reason=look.reason,
     )
 
@@ -90,17 +98,18 @@ def seen_for_longer(judgement: Judgement, first: Judgement | None, own: Judgemen
 
     Its runs then stand for those from their disturbance. UNSTABLE, with the evidence of these runs, if its
     land surely takes over more than a tenth of them; UNDECIDED if it does so by their count alone, or while
-    there is none of its own.
+    there is none of its own. The medians of these and of a STABLE one stay those of the shorter runs.
     """
     if first is None or is_left_alone(first) or judgement.verdict is not Verdict.STABLE:
         return judgement
     if own is None:
-        return replace(judgement, verdict=Verdict.UNDECIDED, reason=first.reason)
+        return replace(judgement, verdict=Verdict.UNDECIDED, reason=first.reason, driven_by_land=True)
     counts = tuple(own.worst if one.kick == own.worst_kick else one for one in judgement.by_kick)
     is_taken = is_taken_by_land(own.worst)
     at = own.worst if is_taken else counts[worst(counts)]
     is_stable = is_clear(at.calm, at.runs)
     verdict = Verdict.STABLE if is_stable else Verdict.UNDECIDED
+    of_any_run = {name: (getattr(judgement, name), getattr(own, name)) for name in LARGEST}
     return replace(
         own if is_taken else judgement,
         verdict=Verdict.UNSTABLE if is_taken else verdict,
@@ -114,5 +123,5 @@ def seen_for_longer(judgement: Judgement, first: Judgement | None, own: Judgemen
         probability_stable=at.probability_stable,
         probability_low=at.probability_low,
         probability_high=at.probability_high,
-        **{name: max(getattr(judgement, name), getattr(own, name)) for name in LARGEST},
+        **{name: max(each) for name, each in of_any_run.items() if None not in each},
     )

@@ -236,7 +236,7 @@ def _notes(
 ) -> tuple[str, ...]:
     """Sentences for under the table: whose curve it is, and where chain and motion leave their models."""
     knots = [Knot(pocket, eta) for pocket in question.cages for eta in (*question.factors, None)]
-    limits = (one for piece, one in found.items() if isinstance(piece, Limit))
+    limits = (one for piece, one in found.items() if isinstance(piece, Limit) and not piece.effect)
     points = (found[knot] for knot in knots if knot in found)
     cages = question.paper_cages.values()
     notes = [note for one in (*question.solved, *limits, *cages, *points) for note in one.notes]
@@ -459,10 +459,10 @@ def _row(
     judgement = found.get(key := Asked(pocket, friction.mean))
     if judgement is None:
         return NotFinished(**values, reason=NOT_FINISHED)
-    if broken := not_finite(judgement):
-        return NotFinished(**values, reason=broken)
     first = found.get(question.longer) if question.longer else None
     judgement = seen_for_longer(judgement, first, found.get(_own_look(question, key, judgement)))
+    if broken := not_finite(judgement):
+        return NotFinished(**values, reason=broken)
     values["judgement"] = judgement = beyond_critical(in_a_window(judgement, values), values)
     if judgement.is_by_land:
         values |= asdict(SafetyFactor())

@@ -27,6 +27,7 @@ from scipy.special import expit
 from separatrix.chain.contacts import BearingState
 from separatrix.chain.hertz import deformed_radius, track_area
 from separatrix.chain.slip_friction import chebyshev_nodes
+from separatrix.ground.errors import InputError, together
 from separatrix.ground.units import (
     Array,
     Hertz,
@@ -38,7 +39,15 @@ from separatrix.ground.units import (
     Second,
     SquareMetre,
 )
-from separatrix.study.study import BallBearing, Operation, Race
+from separatrix.study.film import WearRate, library_rate
+from separatrix.study.study import BallBearing, Candidate, Operation, Race, Study, WearRates
+
+RATES = ("wear.film_wear", "wear.cage_wear")
+
+TEST = (
+    "Measure the wear of film and cage at the pressure and speed of the bearing and in its medium: worn "
+    "volume over load and sliding distance. Then state film_wear, cage_wear and bare_friction."
+)
 
 STRIPS = 16
 """Strips across the contact: the largest work of one is 2 % less than with 512 (shipped bearing)."""
@@ -169,6 +178,33 @@ class Worn(NamedTuple):
     worn_friction: Array  # of a pocket that is worn deep
     worn_depth: Array  # by which its friction has gone 63 % of the way
     reservoir: Array  # volume worn off the pockets from which on nothing stays, infinite without one [m3]
+
+
+def wear_rates(study: Study, wear: WearRates, candidate: Candidate | None) -> dict[str, WearRate]:
+    """Wear coefficients of film and cage by their keys: those of the study, else of the library.
+
+    Raises
+    ------
+    InputError
+        Neither has one, or the races are bare.
+    """
+    if study.film.thickness is None:
+        raise InputError("[film] thickness", "is missing: bare races have no film that wears")
+    own = (candidate and candidate.material) or (study.cage and study.cage.material) or None
+    cage = candidate.name if candidate else "the cage"
+    asked = (wear.film_wear, study.film.material, "the film"), (wear.cage_wear, own, cage)
+    found, problems = dict[str, WearRate](), list[InputError]()
+    for key, (given, material, what) in zip(RATES, asked, strict=True):
+        rate = library_rate(material) if given is None else WearRate(given)
+        if rate is None:
+            name = material.name if material is not None and material.record else what
+            rule = f"is missing, and the library has no wear coefficient of {name}"
+            problems.append(InputError(f"[wear] {key.removeprefix('wear.')}", rule, cure=TEST))
+        else:
+            found[key] = rate
+    if problems:
+        raise together(problems)
+    return found
 
 
 class Land(NamedTuple):

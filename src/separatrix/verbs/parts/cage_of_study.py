@@ -170,7 +170,7 @@ def cage_motion(solution: Solution) -> None:
 
 def worn_cage(solution: Solution) -> None:
     """Refuse what a cage that wears has no life of; of one whose wear is not stated none is asked."""
-    from separatrix.verdict.life_table import wear_rates
+    from separatrix.verdict.wear_life import wear_rates
 
     study = solution.study
     if study.wear is not None:

@@ -175,7 +175,7 @@ def basis_facts(answer: Part) -> list[tuple[str, str | Cell]]:
     return [*rows, *clearance_facts(chain.clearances), ("Free balls lead and lag", lead)]
 
 
-STEEL, BALL, CAGE = "#c9ced6", "#eef1f5", "#e8c27a"
+STEEL_COLOUR, BALL_COLOUR, CAGE_COLOUR = "#c9ced6", "#eef1f5", "#e8c27a"
 SHOULDER, WALL, WIDTH, CAGE_WIDTH = 0.3, 0.22, 1.5, 1.36
 """Height of a land above the groove, thickness of a cage, width of a ring and of a cage over the ball's
 diameter, where the study states none."""
@@ -263,18 +263,18 @@ def section_panel(of: Section, angles: Sequence[Radian]) -> Panel:
         middle = of.centre - side * away * np.cos(alpha)
         depth = np.sqrt(np.maximum(groove**2 - (x + side * away * np.sin(alpha)) ** 2, 0.0))
         surface = side * np.maximum(side * land, side * middle + depth)
-        marks.append(_area([-half, *x, half], [rim, *surface, rim], STEEL, "--"))
+        marks.append(_area([-half, *x, half], [rim, *surface, rim], STEEL_COLOUR, "--"))
         in_groove = side * surface > side * land
         marks.append(Trace(x=x[in_groove].tolist(), y=surface[in_groove].tolist(), width=0.8))
     turns = np.linspace(0.0, 2 * np.pi, 121)
-    marks.append(_area(r * np.sin(turns), of.centre + r * np.cos(turns), BALL))
+    marks.append(_area(r * np.sin(turns), of.centre + r * np.cos(turns), BALL_COLOUR))
     if of.cage is not None:
         low, high, width = of.cage
         rim = max(width, 1.06 * of.hole)
         for side in (-1, 1):
             across = [side * of.hole, side * rim, side * rim, side * of.hole]
             outline = "-" if of.is_cage_stated else "--"
-            marks.append(_area(across, [low, low, high, high], CAGE, outline))
+            marks.append(_area(across, [low, low, high, high], CAGE_COLOUR, outline))
     for side, alpha in zip((-1, 1), angles, strict=True):
         ends = [0.0, side * r * np.sin(alpha)], [of.centre, of.centre + side * r * np.cos(alpha)]
         marks.append(Trace(x=ends[0], y=ends[1], colour=VERMILION, marker="o", size=2.5))

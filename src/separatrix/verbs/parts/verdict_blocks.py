@@ -65,6 +65,11 @@ def is_by_land(row: Part) -> bool:
     return bool(row.verdict == "UNSTABLE" and row.driven_by_land)
 
 
+def is_land_driven(row: Part) -> bool:
+    """Whether friction on the land drives the cage of a row that is not stable."""
+    return bool(row.verdict != "STABLE" and row.driven_by_land)
+
+
 def pocket_force(row: Part) -> Cell:
     """Return the largest force in a pocket, or what the races hold, beyond which it means nothing."""
     largest = cell(judged(row), "largest_contact_force")
@@ -155,7 +160,7 @@ def _safety(first: Sequence[Part]) -> str:
 def deciding(answer: Part, rows: Sequence[Part]) -> Iterator[str]:
     """Yield what decides a ranking besides frictions: inputs, the land, a weak whirl, extrapolation."""
     known = [row for row in rows if judged(row)]
-    if driven := [row.name for row in known if is_by_land(row)]:
+    if driven := [row.name for row in known if is_land_driven(row)]:
         friction = f"friction on the land, {answer.cage.land_friction:g}, and not in the pockets"
         yield f"{', '.join(driven)}: {friction}, drives the whirl."
     if not known or not has_safety(known):
