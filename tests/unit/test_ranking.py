@@ -262,7 +262,8 @@ def test_a_row_whose_evidence_is_not_finite_has_a_reason_and_no_verdict(bad):
     eta = SimpleNamespace(restitution_factor=0.3)
     pocket = Pocket(0.02, 1e6, 1e-4, 0.0)
     cages = {pocket: SimpleNamespace(restitution=eta)}
-    question = SimpleNamespace(pockets={"A": pocket}, cages=cages, spreads={})
+    rest = {"longer": None, "settings": SimpleNamespace(runs=16)}
+    question = SimpleNamespace(pockets={"A": pocket}, cages=cages, spreads={}, **rest)
     evidence = judgement(largest_contact_force=float(bad))
     found = {Asked(pocket, 0.1): evidence}
     row = _row(question, found, "A", "air", MeanFriction(0.1, 0.01))
