@@ -308,7 +308,7 @@ def test_a_cage_without_candidates_has_a_name_and_notes():
         one = replace(WHEEL, ranking=None, wear=RATES, cage=cage)
         found = life(one, revolutions=1e6, draws=64, runner=Tabulated())
         assert (found.candidate, FREELY in found.notes) == (name, False)
-    # what a long look finds is the first note, unless the table counts the cage as unstable with any friction
+    # what a long look finds is the first note, unless most cages are unstable from the start
     look = SimpleNamespace(worst=SimpleNamespace(runs=16, whirls_by_land=9), reason="9 of 16")
     for critical, is_first in ((0.2, True), (LEAST_CRITICAL, False)):
         notes = life(one, revolutions=1e6, draws=64, runner=Tabulated(critical, look)).notes

@@ -219,7 +219,7 @@ def life(
         made_of = candidate or (study.cage and study.cage.material)
         name = (made_of and made_of.name) or study.name
         lived = _life(name, each, worn, inputs, speed, revolutions, tested, notes)
-        if look is None or is_left_alone(look) or FREELY in notes:
+        if look is None or is_left_alone(look) or lived.unstable_at_start > 0.5:
             return lived
         return replace(lived, notes=(look.reason + LEFT_OUT, *lived.notes))
 
