@@ -52,7 +52,7 @@ def test_drag_on_a_ball_in_liquid_nitrogen(swirl, force):
 
 def test_fluid_on_spin_and_faces():
     """Stokes; then of another program, to its digits: a ball, the outside and the inside of the cage."""
-    # Stokes: 3 pi mu D v at Reynolds numbers of 1e-4, where the next term is 0.15 Re^0.687
+    # Stokes: 3 pi mu D v at Reynolds numbers of 1e-4, where the next term, 0.15 Re^0.687, is 3e-4
     assert ball_drag(LN2, 1e-3, 2e-8) == pytest.approx(3.0 * math.pi * LN2.viscosity * 1e-3 * 2e-8, rel=1e-3)
     spin = math.hypot(4083.218, 1942.614)
     assert spin_moment(LN2, 11.1125e-3, spin) == pytest.approx(4.3385e-4, rel=1e-3)  # 0.146 has three digits

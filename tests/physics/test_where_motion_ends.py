@@ -144,9 +144,8 @@ def test_a_land_that_takes_over_a_calm_cage_keeps_it_from_stable():
     assert (open_end.driven_by_land, longer.force_exceeds_races, longer.largest_offset) == (True, True, 1.0)
     assert (longer.verdict, longer.is_by_land, longer.worst) == (Verdict.UNSTABLE, True, look.worst)
     assert longer.probability_stable == look.worst.probability_stable < 0.5
-    # with the evidence of these runs, and the duration that was asked for
     assert (longer.cage_motion, longer.rubbing_power) == (CageMotion.WHIRLING, look.rubbing_power)
-    assert (longer.duration, longer.longest_run) == (judged.duration, look.longest_run)
+    assert (longer.duration, longer.longest_run) == (judged.duration, look.longest_run)  # asked, and run
     counts = (replace(look.worst, settles=16 - n, whirls=n, whirls_by_land=n) for n in (1, 2))
     few, some = (replace(look, by_kick=(one,)) for one in counts)
     assert seen_for_longer(judged, few, look) == judged  # less than a tenth

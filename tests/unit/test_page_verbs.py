@@ -32,7 +32,7 @@ from separatrix.verbs.parts.verdict_blocks import (
     power_facts,
     verdict_sentences,
 )
-from separatrix.verbs.rank import by_paper
+from separatrix.verbs.rank import by_paper, evidence_head
 from separatrix.verbs.stability import friction_words, own_words
 from separatrix.verbs.sweep import SHOWN, case_table, envelope_figure, worst_words
 
@@ -492,8 +492,10 @@ def test_the_paper_differs_by_the_motion_too(motion, ball):
     assert ("a ball that may spin in an impact resists it with" in told) is (ball == "auto")
     assert ("the cage also tilts" in told) is (motion == "space")
     row = Part(row.values | {"verdict": "UNSTABLE", "driven_by_land": True, "paper_verdict": "STABLE"}, {})
-    look = {"long_look": {"takes_over": True, "duration": 3.0}}
-    told = by_paper(Part(answer.values | look, {}), [row], ["Phenolic"])[0].text
+    look = {"takes_over": True, "duration": 3.0, "count": {"kick": 0.5}}
+    of_runs = {"long_look": look, "kicks": [0.1, 0.5], "runs": 64, "duration": 0.3}
+    told = by_paper(asked := Part(answer.values | of_runs, {}), [row], ["Phenolic"])[0].text
+    assert evidence_head(asked) == "Evidence: 64 runs of 0.3 from each of 0.1, 0.5 (3)"
     assert told.endswith("drives the cage. Runs of 3 show it; those of the paper are shorter.")
 
 
